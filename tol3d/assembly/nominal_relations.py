@@ -6,9 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Plane, Point, Relation, RoundPlane
+from tol3d.assembly.model import Assembly, Cone, Feature, Relation
 from tol3d.assembly.model.cone_seat import cone_seat
-from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.placing.method import features_placed
 from tol3d.numerics.arrays import Array
 
@@ -64,30 +63,23 @@ def misses(assembly: Assembly) -> Iterator[Miss]:
 
 def _missing(own: Relation, moving: Feature, target: Feature, pose: Array, its: Array) -> tuple[float, Array]:
     """The largest distance of a feature's ends from their places by a relation, and that end (3,) [mm]."""
-    ends = _ends(moving) @ pose[:3, :3].T + pose[:3, 3]
+    ends = moving.shape.ends @ pose[:3, :3].T + pose[:3, 3]
     normal, off = its[:3, 2], ends - its[:3, 3]
-    if isinstance(target.shape, Point):
+    surfaces = moving.shape.surface, target.shape.surface
+    if surfaces[1] == "point":
         missing = np.linalg.norm(off, axis=1)
     elif own.kind == "coincident" and isinstance(target.shape, Cone) and isinstance(moving.shape, Cone):
         sign = float(np.sign(pose[:3, 2] @ normal))
         seat = cone_seat(moving.shape, target.shape, sign)
         assert seat is not None, "refused before"
-        missing = np.linalg.norm(off - np.outer(seat.height + sign * _ends(moving)[:, 2], normal), axis=1)
-    elif isinstance(target.shape, Axis) and isinstance(moving.shape, Axis | Point):
+        missing = np.linalg.norm(off - np.outer(seat.height + sign * moving.shape.ends[:, 2], normal), axis=1)
+    elif surfaces[1] != "plane" and surfaces[0] != "plane":
         missing = np.linalg.norm(off - np.outer(off @ normal, normal), axis=1)
-    elif isinstance(target.shape, Axis):  # a plane on a cylinder
-        ends = _ends(target) @ its[:3, :3].T + its[:3, 3]
-        missing = np.abs((ends - pose[:3, 3]) @ pose[:3, 2] - (nominal_size(target.shape) or 0.0) / 2)
+    elif surfaces[1] != "plane":  # a plane on a cylinder
+        ends = target.shape.ends @ its[:3, :3].T + its[:3, 3]
+        missing = np.abs((ends - pose[:3, 3]) @ pose[:3, 2] - (target.shape.nominal_size or 0.0) / 2)
     else:
-        asked = (nominal_size(moving.shape) or 0.0) / 2 if own.kind == "tangent" else own.distance
+        asked = (moving.shape.nominal_size or 0.0) / 2 if own.kind == "tangent" else own.distance
         missing = np.abs(off @ normal - asked)
     worst = int(np.argmax(missing))
     return float(missing[worst]), ends[worst]
-
-
-def _ends(feature: Feature) -> Array:
-    """Points at which its position is evaluated, in its frame (ends, 3) [mm]."""
-    if isinstance(feature.shape, RoundPlane):
-        return feature.shape.radius * np.array([[1.0, 0, 0], [0, 1.0, 0], [-1.0, 0, 0], [0, -1.0, 0]])
-    shape: Axis | Plane | Point = feature.shape
-    return shape.ends

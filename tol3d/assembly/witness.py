@@ -13,11 +13,10 @@ import numpy as np
 
 from tol3d.assembly.clearances.distances import SolidDistances
 from tol3d.assembly.clearances.pair import SolidPair
-from tol3d.assembly.model import Assembly, Axis, Feature, Measured, Plane, RoundPlane
-from tol3d.assembly.model.feature import nominal_size
+from tol3d.assembly.model import Assembly, Feature, Measured
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.actual_feature import actual_size
-from tol3d.assembly.placing.surfaces import kind_of, over
+from tol3d.assembly.placing.surfaces import over
 from tol3d.assembly.witnessed import reads
 from tol3d.numerics.arrays import Array
 from tol3d.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
@@ -109,20 +108,20 @@ def _bodies(start: Feature, end: Feature) -> tuple["_Body", "_Body"]:
     Cylinders beside each other and over planes are represented by their axes, from end to end or over the plane:
     between cylinders FCL converges to some micrometres only.
     """
-    match kind_of(start.shape), kind_of(end.shape):
-        case "plane", "line":
+    match start.shape.surface, end.shape.surface:
+        case "plane", "axis":
             return _plane(), replace(_line(end), on_plane=(end, start))
-        case "line", "plane":
+        case "axis", "plane":
             return replace(_line(start), on_plane=(start, end)), _plane()
         case "plane", _:
             return _plane(), _ball(end)
         case _, "plane":
             return _ball(start), _plane()
-        case "line", "line":
+        case "axis", "axis":
             return _line(start), _line(end)
-        case "line", _:
+        case "axis", _:
             return _cylinder(start), _ball(end)
-        case _, "line":
+        case _, "axis":
             return _ball(start), _cylinder(end)
     return _ball(start), _ball(end)
 
@@ -130,11 +129,10 @@ def _bodies(start: Feature, end: Feature) -> tuple["_Body", "_Body"]:
 def _over(pair: tuple[Feature, Feature], line: Array, plane: Array) -> Surface:
     """The part of a cylinder's axis that is over a plane, from the frames of both (4, 4)."""
     shape, flat = (own.shape for own in pair)
-    assert isinstance(shape, Axis)
-    assert isinstance(flat, Plane | RoundPlane)
-    places = (own @ plane[:3, :2] for own in (line[:3, 3] - plane[:3, 3], shape.length / 2 * line[:3, 2]))
+    (half,) = shape.reach
+    places = (own @ plane[:3, :2] for own in (line[:3, 3] - plane[:3, 3], half * line[:3, 2]))
     low, high = over(flat, *(own[:, None] for own in places))
-    return _segment(shape.length / 2 * float(low[0]), shape.length / 2 * float(high[0]))
+    return _segment(half * float(low[0]), half * float(high[0]))
 
 
 def _radius(feature: Feature, deviations: Array) -> Array:
@@ -162,8 +160,8 @@ def _plane() -> _Body:
 
 def _line(feature: Feature) -> _Body:
     """Its axis."""
-    assert isinstance(feature.shape, Axis)
-    return _Body(_segment(-feature.shape.length / 2, feature.shape.length / 2), 0.0)
+    (half,) = feature.shape.reach
+    return _Body(_segment(-half, half), 0.0)
 
 
 def _segment(low: float, high: float) -> Surface:
@@ -173,7 +171,7 @@ def _segment(low: float, high: float) -> Surface:
 
 
 def _core(feature: Feature) -> float:
-    return max(CORE * (nominal_size(feature.shape) or 0.0) / 2, POINT)
+    return max(CORE * (feature.shape.nominal_size or 0.0) / 2, POINT)
 
 
 def _ball(feature: Feature) -> _Body:

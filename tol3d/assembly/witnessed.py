@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Axis, Feature
-from tol3d.assembly.model.moves import is_inner
+from tol3d.assembly.model import Assembly, Feature
 from tol3d.assembly.placing.surfaces import PARALLEL
 
 
@@ -17,14 +16,14 @@ def reads(assembly: Assembly, name: str) -> bool:
     if measured.kind != "surface_gap":
         return False
     features = [assembly.features[feature] for feature in measured.features]
-    return not any(is_inner(own.shape) for own in features) and not _face_with_their_ends(assembly, *features)
+    return not any(own.shape.inner for own in features) and not _face_with_their_ends(assembly, *features)
 
 
 def _face_with_their_ends(assembly: Assembly, start: Feature, end: Feature) -> bool:
     """True for parallel cylinders that nominally have no length in common."""
-    if not (isinstance(start.shape, Axis) and isinstance(end.shape, Axis)):
+    if (start.shape.surface, end.shape.surface) != ("axis", "axis"):
         return False
     own, other = (assembly.part[feature.part].pose @ feature.frame for feature in (start, end))
     apart = abs(float(own[:3, 2] @ (other[:3, 3] - own[:3, 3])))
     is_parallel = float(np.linalg.norm(np.cross(own[:3, 2], other[:3, 2]))) < PARALLEL
-    return is_parallel and apart > (start.shape.length + end.shape.length) / 2
+    return is_parallel and apart > start.shape.reach[0] + end.shape.reach[0]

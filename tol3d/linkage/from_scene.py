@@ -17,7 +17,6 @@ from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec
 from tol3d.assembly.grammar.measures.clearance import ClearanceSpec as SolidClearanceSpec
 from tol3d.assembly.grammar.measures.pose_errors import DirectionErrorSpec, OrientationErrorSpec, PoseErrorSpec
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
-from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.errors import InputError
 from tol3d.linkage.grammar.close_loop import STEP, CloseLoopSpec
@@ -250,7 +249,7 @@ def _structure(spec: CloseLoopSpec, name: str, scene: Scene, drawing: Drawing) -
 
 
 def _radius(drawing: Drawing, feature: str) -> float:
-    size = nominal_size(drawing.kind(feature).shape)
+    size = drawing.kind(feature).shape.nominal_size
     assert size is not None, "a sphere"
     return size / 2
 

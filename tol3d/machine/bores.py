@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
-from tol3d.assembly.model import Assembly, Axis, Contribution, Feature, Measured, Point
+from tol3d.assembly.model import Assembly, Contribution, Feature, Measured, Point
 from tol3d.machine.nominal import HousedShaft
 from tol3d.numerics.arrays import Array
 
@@ -107,7 +107,6 @@ def bores_of(assembly: Assembly, shafts: Sequence[HousedShaft]) -> Bores:
 
 def _end_of(bore: Feature, end: int) -> Feature:
     """The end of a bore as a point."""
-    assert isinstance(bore.shape, Axis)
     frame = bore.frame.copy()
     frame[:3, 3] += frame[:3, :3] @ bore.shape.ends[end]
     aside = np.zeros((3, 4))

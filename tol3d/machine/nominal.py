@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Axis
+from tol3d.assembly.model import Assembly
 from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec
 from tol3d.gearing.model.brought import Brought, brought_into
 from tol3d.gearing.model.from_scene import meshes_of_scene
@@ -87,7 +87,6 @@ def _line(scene: Scene, name: str, move: ShaftInBoresSpec, assembly: Assembly) -
     frames = [assembly.part[assembly.features[own].part].pose @ assembly.features[own].frame for own in move.in_]
     if len(frames) == 1:
         shape = assembly.features[move.in_[0]].shape
-        assert isinstance(shape, Axis)
         places = shape.ends @ frames[0][:3, :3].T + frames[0][:3, 3]
         return Bore(move.in_[0], 0, places[0]), Bore(move.in_[0], 1, places[1])
     first, last = (Bore(own, None, frame[:3, 3]) for own, frame in zip(move.in_, frames, strict=True))

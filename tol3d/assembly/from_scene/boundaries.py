@@ -14,7 +14,7 @@ from tol3d.assembly.grammar.datums import DatumSpec, Lying
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.feature_spec import AXES
-from tol3d.assembly.model import Axis, Contribution, DatumFrame, Floating, Gauges, Slot
+from tol3d.assembly.model import Contribution, DatumFrame, Floating, Gauges
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
 from tol3d.assembly.zones.float_draw import SHIFT_AND_TURN, FloatDraw, GaugeShift, Leaning
@@ -122,9 +122,7 @@ def rooms_of(drawing: Drawing, part: str, datums: tuple[DatumSpec, ...]) -> tupl
     for k, name in ((k, name) for k, own in enumerate(datums) if own.gauge is not None for name in own.features):
         feature = f"{part}.{name}"
         shape, (virtual, grows) = drawing.kind(feature).shape, _virtual(drawing, feature, datums, k)
-        assert isinstance(shape, Axis | Slot)
-        nominal = shape.width if isinstance(shape, Slot) else shape.diameter or 0.0
-        found.append(GaugeRoom(feature, nominal + virtual, grows))
+        found.append(GaugeRoom(feature, (shape.nominal_size or 0.0) + virtual, grows))
     return tuple(found)
 
 

@@ -9,14 +9,14 @@ from tol3d.assembly.from_scene.effects import Effects
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.moves.assembly_move import PointTouch
-from tol3d.assembly.model import Axis, Cone, Contribution, Feature, Plane, Point, RoundPlane
+from tol3d.assembly.model import Contribution, Feature, Point
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 
 
 def touched_name(touch: PointTouch, features: Mapping[str, Feature]) -> str:
     """The name of what a point touches: a plane's point there, or the feature itself if it is no plane."""
-    is_plane = isinstance(features[touch.side].shape, Plane | RoundPlane)
+    is_plane = features[touch.side].shape.surface == "plane"
     return f"{touch.side} at {touch.point}" if is_plane else touch.side
 
 
@@ -62,7 +62,6 @@ def contact_points(
 
 def _of_plane(name: str, plane: Feature, point: Feature, poses: Mapping[str, Array]) -> Feature:
     """The point of a plane at a point of another part: it rises with the plane as that tilts."""
-    assert isinstance(plane.shape, Plane | RoundPlane)
     into = np.asarray(np.linalg.inv(poses[plane.part] @ plane.frame))
     at = into @ poses[point.part] @ point.frame
     x, y = float(at[0, 3]), float(at[1, 3])
@@ -92,22 +91,9 @@ def _lifted(
     """
     turned = poses[point.part][:3, :3] @ point.frame[:3, :3]
     direction = turned.T @ pose[:3, :3] @ along
-    middle = _middle(point)
+    middle = point.shape.origin_by
     moved_by = tuple(replace(each, matrix=middle @ each.matrix) for each in point.moved_by)
     moved_by += tuple(replace(each, matrix=direction[:, None] @ each.matrix) for each in by)
     return Feature(
         name, point.part, Point(), point.frame, point.parent, moved_by, grown_by=point.grown_by, is_named=False
     )
-
-
-def _middle(feature: Feature) -> Array:
-    """Displacement of a feature's origin per component (3, components)."""
-    match feature.shape:
-        case Point():
-            return np.eye(3)
-        case Cone():
-            return np.array([[0.5, 0.0, 0.5, 0.0, 0.0], [0.0, 0.5, 0.0, 0.5, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0]])
-        case Axis():
-            return 0.5 * np.array([[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.0]])
-        case Plane() | RoundPlane():
-            return np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])

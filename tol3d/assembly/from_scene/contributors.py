@@ -11,13 +11,11 @@ from tol3d.assembly.from_scene.segments import motion_of
 from tol3d.assembly.from_scene.zones import drawn_in, enveloped, sized_by
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features import ConeSpec, PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.forms import whole_form
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec, is_of_round_surface
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
-from tol3d.assembly.model import Axis, Cone, Point, Slot
-from tol3d.assembly.model.feature import nominal_size
+from tol3d.assembly.model import Cone
 from tol3d.assembly.zones import EnvelopedForm
 from tol3d.distributions import Distribution
 from tol3d.import_path import named
@@ -101,7 +99,7 @@ class _Tolerances:
     def _refuse_no_size(self, own: Stated, draw: Scalar) -> None:
         """A law that leaves nothing of a diameter or width, or more than doubles it."""
         shape = self.drawing.kind(own.feature).shape
-        nominal = nominal_size(shape)
+        nominal = shape.nominal_size
         if nominal is not None and nominal + draw.distribution.low <= 0.0:
             words = f"expected sizes above 0, got down to {draw.distribution.low:g} mm on a nominal {nominal:g} mm"
             raise self.scene.refuse(("tolerances", own.entry, "distribution"), words)
@@ -117,19 +115,14 @@ class _Tolerances:
         own = self.drawing.kind(feature)
         direction = self.drawing.positive(feature, spec)
         assert direction is not None, "refused before"
-        x, y, z = own.frame[:3, :3].T @ direction
-        if isinstance(own, PointSpec | SphereSpec):
-            return np.array([x, y, z])
-        if isinstance(own, PlaneSpec | SlotSpec):
-            return np.array([z, 0.0, 0.0])
-        return np.array([x, y, x, y, z]) if isinstance(own, ConeSpec) else np.array([x, y, x, y])
+        along = own.frame[:3, :3].T @ direction
+        return own.shape.moved(lambda _: along)
 
     def _zone(self, own: Stated) -> Drawn:
         draw, matrix = drawn_in(self.scene, own, self.drawing)
         effects = [Effect("moved_by", own.feature, matrix)]
         if is_of_round_surface(own.spec, self.drawing.kind(own.feature).kind):
             shape, larger = self.drawing.kind(own.feature).shape, np.zeros((1, matrix.shape[1]))
-            assert isinstance(shape, Axis | Point)
             larger[0, 0] = -2.0 if shape.inner else 2.0  # outward is out of the material
             if isinstance(shape, Cone):
                 larger[0, 0] /= math.cos(shape.angle)
@@ -170,7 +163,6 @@ class _Tolerances:
             )
             raise self.scene.refuse(("tolerances", own.entry, "law"), f"{words} too; leave out that of the wider one")
         shape, law = self.drawing.kind(own.feature).shape, named(spec.law.fitting)
-        assert isinstance(shape, Axis | Slot)
         form = whole_form(spec, shape)
         draw: Draw = Scalar(law(spec.law, form, self.scene.files))
         if self.drawing.is_enveloped(own.feature):

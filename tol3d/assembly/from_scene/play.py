@@ -13,8 +13,7 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import PlaySpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, RandomSpec, TowardSpec
-from tol3d.assembly.model import Axis, Bolt, Contribution, Engage, Engagement, Feature, Floating, Plane, Slot
-from tol3d.assembly.model.feature import nominal_size
+from tol3d.assembly.model import Axis, Bolt, Contribution, Engage, Engagement, Feature, Floating
 from tol3d.assembly.zones.float_draw import SHIFT_AND_TURN, FloatDraw, Law
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -102,7 +101,7 @@ def _bolted(
     here = ("moves", name, "pairs", k)
     if np.linalg.norm(np.cross(frames[0][:3, 2], frames[1][:3, 2])) > FLAT:
         raise scene.refuse(here, "expected two holes that are nominally parallel, got them at an angle")
-    places = [_hole_ends(own) for own in holes]
+    places = [own.shape.ends for own in holes]
     ends = np.concatenate([own @ frame[:3, :3].T + frame[:3, 3] for own, frame in zip(places, frames, strict=True)])
     frame = frames[1].copy()
     frame[:3, 3] = ends.mean(axis=0)
@@ -114,7 +113,7 @@ def _bolted(
         by: tuple[Contribution, ...] = (Contribution(contributor, setting.drawn[contributor], np.eye(1)),)
     else:
         shank = features[spec.of]
-        diameter, by = nominal_size(shank.shape) or 0.0, shank.mating_by
+        diameter, by = shank.shape.nominal_size or 0.0, shank.mating_by
     mean = diameter + _mean_deviation(effects, by)
     for own in holes:
         short = mean - _mean_size(effects, own)
@@ -125,11 +124,6 @@ def _bolted(
             raise scene.refuse(here, f"{words}; nothing could be assembled")
     bolt = Bolt(diameter, by, frame, reach)
     return Engagement(holes[0].name, holes[1].name, places[0], places[1], bolt)
-
-
-def _hole_ends(hole: Feature) -> Array:
-    assert isinstance(hole.shape, Axis)
-    return hole.shape.ends
 
 
 def _floating(name: str, spec: PlaySpec, setting: Setting) -> Floating:
@@ -144,7 +138,7 @@ def _floating(name: str, spec: PlaySpec, setting: Setting) -> Floating:
 
 def _mean_size(effects: Effects, feature: Feature) -> float:
     """At the means of its tolerances [mm]."""
-    return (nominal_size(feature.shape) or 0.0) + _mean_deviation(effects, feature.mating_by)
+    return (feature.shape.nominal_size or 0.0) + _mean_deviation(effects, feature.mating_by)
 
 
 def _mean_deviation(effects: Effects, size_by: Sequence[Contribution]) -> float:
@@ -155,7 +149,7 @@ def _mean_deviation(effects: Effects, size_by: Sequence[Contribution]) -> float:
 def _engagement(pair: EngagementSpec, features: Mapping[str, Feature], poses: Mapping[str, Array]) -> Engagement | str:
     """The engagement of a pair, or the sentence that says why there is none."""
     one, other = features[pair.from_], features[pair.to]
-    inner, outer = (one, other) if getattr(one.shape, "inner", False) else (other, one)
+    inner, outer = (one, other) if one.shape.inner else (other, one)
     seen = np.linalg.inv(poses[part_of(inner.name)] @ inner.frame) @ poses[part_of(outer.name)] @ outer.frame
     whose = {"from": one, "to": other}[pair.over] if pair.over else None
     over = () if whose is None else ("inner",) if whose is inner else ("outer",)
@@ -163,23 +157,20 @@ def _engagement(pair: EngagementSpec, features: Mapping[str, Feature], poses: Ma
     if isinstance(inner.shape, Axis):
         if np.hypot(axis[0], axis[1]) > FLAT:
             return f"expected a pin nominally along the axis of its hole, got {outer.name!r} at an angle"
-        ends = _overlap([inner.shape.ends[:, 2], seen[2, 3] + axis[2] * _ends(outer)], over)
+        ends = _overlap([inner.shape.ends[:, 2], seen[2, 3] + axis[2] * outer.shape.ends[:, 2]], over)
         places = np.zeros((2, 3))
         places[:, 2] = ends
     elif isinstance(outer.shape, Axis):
-        assert isinstance(inner.shape, Plane)
         if abs(axis[2]) > FLAT:
             return f"expected a pin nominally along the faces of its slot, got {outer.name!r} across them"
         inside = [_within(seen[r, 3], axis[r], inner.shape.reach[r]) for r in (0, 1)]
         slot = np.array([max(low for low, _ in inside), min(high for _, high in inside)])
-        ends = _overlap([slot, _ends(outer)], over)
+        ends = _overlap([slot, outer.shape.ends[:, 2]], over)
         places = seen[:3, 3] + ends[:, None] * axis
         places[:, 2] = 0.0
     else:
         if np.hypot(axis[0], axis[1]) > FLAT:
             return f"expected a tab nominally parallel to its slot, got {outer.name!r} at an angle"
-        assert isinstance(inner.shape, Slot)
-        assert isinstance(outer.shape, Slot)
         own, its = inner.shape.ends, outer.shape.ends @ seen[:3, :3].T + seen[:3, 3]
         ranges = [_overlap([np.sort(own[:, r])[[0, -1]], np.sort(its[:, r])[[0, -1]]], over) for r in (0, 1)]
         ends = min(ranges, key=lambda found: found[1] - found[0])
@@ -190,13 +181,8 @@ def _engagement(pair: EngagementSpec, features: Mapping[str, Feature], poses: Ma
     back = np.linalg.inv(seen)
     opposite = places @ back[:3, :3].T + back[:3, 3]
     # on the pin's axis or in the tab's middle, however far off its hole or slot it is drawn
-    opposite[:, [0, 1] if isinstance(outer.shape, Axis) else [2]] = 0.0
+    opposite[:, outer.shape.located] = 0.0
     return Engagement(inner.name, outer.name, places, opposite)
-
-
-def _ends(feature: Feature) -> Array:
-    assert isinstance(feature.shape, Axis)
-    return feature.shape.ends[:, 2]
 
 
 def _overlap(ranges: Sequence[Array], over: Sequence[str]) -> Array:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, assert_never
+from typing import Final
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.tolerances.location import Composite
-from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Part, Plane, Point, RoundPlane
+from tol3d.assembly.model import Assembly, Feature, Part, RoundPlane
 from tol3d.assembly.placing.holding import held_by_datums
 from tol3d.assembly.zones import ZoneDraw, catalogue
 from tol3d.numerics.arrays import Array
@@ -61,17 +61,10 @@ class Member:
     @cached_property
     def judged(self) -> Array:
         """Points where its zone holds it (points, 3), from its middle [mm]; of a disc a square about its rim's ends."""
-        shape, axes = self.feature.shape, self.feature.frame[:3, :3].T
-        match shape:
-            case Axis() if self.reach is not None:
-                ends = np.array([[0.0, 0.0, shape.length / 2], [0.0, 0.0, shape.length / 2 + self.reach]])
-            case RoundPlane():
-                ends = shape.radius * np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
-            case Axis() | Plane() | Point():
-                ends = shape.ends
-            case _:
-                assert_never(shape)
-        return np.asarray(ends @ axes)
+        ends = self.feature.shape.ends
+        if self.reach is not None:
+            ends = ends[-1] + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, self.reach]])
+        return np.asarray(ends @ self.feature.frame[:3, :3].T)
 
     def levers(self, centre: Array) -> Array:
         """Displacement (points, directions, 3) of what is judged along its directions, per turn about a centre."""
@@ -88,25 +81,15 @@ class Member:
 
     def moved(self, centre: Array, shifts: Array, turns: Array) -> Array:
         """Its components (components, motions) by shifts (3, shifts) and turns (3, turns) about a centre."""
-        shape, frame = self.feature.shape, self.feature.frame
+        frame = self.feature.frame
         seen = self.along.T @ self.along @ frame[:3, :3].T  # of a displacement, in its own frame
 
-        def at(point: Sequence[float]) -> Array:
+        def displaced(point: Array) -> Array:
             arm = self.place - centre + frame[:3, :3] @ point
             turned = np.cross(turns, arm, axisa=0, axisb=0, axisc=0) if turns.size else turns
             return np.asarray(seen @ np.hstack([shifts, turned]))
 
-        middle = at((0.0, 0.0, 0.0))
-        match shape:
-            case Axis():
-                half = shape.length / 2
-                ends = np.concatenate([at((0.0, 0.0, -half))[:2], at((0.0, 0.0, half))[:2]])
-                return np.vstack([ends, middle[2:]]) if isinstance(shape, Cone) else ends
-            case Plane() | RoundPlane():
-                x, y = shape.reach
-                rises = [(at(end) - middle)[2] for end in ((x, 0.0, 0.0), (0.0, y, 0.0))]
-                return np.stack([middle[2], *rises])
-        return middle
+        return self.feature.shape.moved(displaced)
 
 
 def motion_of(scene: Scene, drawing: Drawing, pattern: Sequence[Stated]) -> tuple[ZoneDraw, dict[str, Array], str]:

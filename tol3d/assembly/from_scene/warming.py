@@ -14,8 +14,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model import Axis, Cone, Datum, DatumFrame, Point, RoundPlane, Slot
-from tol3d.assembly.model.feature import nominal_size
+from tol3d.assembly.model import Axis, Datum, DatumFrame, Point, Slot
 from tol3d.numerics.arrays import Array
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.draw import Scalar
@@ -57,7 +56,7 @@ def growth(drawing: Drawing, frames: DatumFrames) -> Iterator[Drawn]:
             turn = drawing.kind(name).frame[:3, :3]
             matrix = expansion * turn.T @ (_grown(drawing.kind(name)) - shift)
             effects.append(Effect("grown_by", name, matrix[:, None]))
-            if size := nominal_size(drawing.kind(name).shape):
+            if size := drawing.kind(name).shape.nominal_size:
                 effects.append(Effect("size_by", name, np.array([[expansion * size]])))
         contributor = PlainContributor(entry, spec.kind, draw, *UNITS["temperature"], spec.description, nominal="")
         yield Drawn(contributor, tuple(effects))
@@ -85,8 +84,7 @@ def _shift(frame: DatumFrame, drawing: Drawing) -> Array:
 
 def _grown(feature: FeatureUnion) -> Array:
     """The point (3,) by whose growth a feature moves [mm]: its middle, of a cone its apex."""
-    shape, frame = feature.shape, feature.frame
-    return np.asarray(frame[:3, 3] + (shape.apex if isinstance(shape, Cone) else 0.0) * frame[:3, 2])
+    return np.asarray(feature.frame[:3, 3] + feature.shape.growth_centre * feature.frame[:3, 2])
 
 
 def _turn(frame: DatumFrame, drawing: Drawing) -> Array:
@@ -116,8 +114,8 @@ def _asked(datum: Datum, features: Sequence[FeatureUnion], reach: float, left: A
     own, frame = features[0], features[0].frame
     place, sides = frame[:3, 3], frame[:3, :2].T
     if datum.simulator == "pattern":
-        ways = [each.frame[:3, :2].T if isinstance(each.shape, Axis) else _sides(each) for each in features]
-        ends = [[each.frame[:3, :3] @ end for end in _ends(each)] for each in features]
+        ways = [each.frame[:3, each.shape.located].T for each in features]
+        ends = [[each.frame[:3, :3] @ end for end in each.shape.ends] for each in features]
         places = [(each.frame[:3, 3], way, some) for each, way, some in zip(features, ways, ends, strict=True)]
         every = [rows(at + end, way) for at, way, some in places for end in some]
         yield np.concatenate(every), np.concatenate([way @ at for at, way, some in places for _ in some])
@@ -151,14 +149,6 @@ def _by_place(moved: Array, shape: Slot) -> bool:
     return bool(alone and away > shape.reach[1] * about_x + shape.reach[0] * about_y - SEEN)
 
 
-def _ends(feature: FeatureUnion) -> Array:
-    """Places of a feature that count in a pattern, in its frame (ends, 3)."""
-    shape = feature.shape
-    if isinstance(shape, RoundPlane):
-        return shape.radius * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-    return np.asarray(shape.ends)
-
-
 def _held(feature: FeatureUnion, names: Sequence[str], drawing: Drawing) -> Array:
     """Directions (directions, 3) in which a datum holds the place of what is toleranced to it."""
     frame = feature.frame
@@ -170,7 +160,4 @@ def _held(feature: FeatureUnion, names: Sequence[str], drawing: Drawing) -> Arra
 
 def _sides(feature: FeatureUnion) -> Array:
     """Directions (directions, 3) in which a feature's own place is held."""
-    shape, frame = feature.shape, feature.frame
-    if isinstance(shape, Point | Cone):
-        return frame[:3, :3].T
-    return frame[:3, :2].T if isinstance(shape, Axis) else frame[:3, 2:3].T
+    return feature.frame[:3, feature.shape.held].T

@@ -27,7 +27,7 @@ from tol3d.assembly.grammar.tolerances.location import (
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec, are_alike
-from tol3d.assembly.model import Axis, Cone, Contribution, Feature, Slot
+from tol3d.assembly.model import Axis, Cone, Contribution, Feature
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones import (
     Bonus,
@@ -74,8 +74,8 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
         raise scene.refuse(("tolerances", own.entry, "zone"), str(error)) from None
     draw, size = drawn_by(spec.law, zone, scene.files), _size(scene, own, drawing, zone)
     matrix = draw.matrix if spec.zone.projected is None else _projecting(scene, own, drawing) @ draw.matrix
-    if isinstance(feature.shape, Cone) and len(matrix) < len(feature.shape.components):  # it limits the axis alone
-        matrix = np.vstack([matrix, np.zeros((1, matrix.shape[1]))])
+    if lacking := len(feature.shape.components) - len(matrix):  # of a cone it limits the axis alone
+        matrix = np.vstack([matrix, np.zeros((lacking, matrix.shape[1]))])
     if size is None:
         return draw, matrix
     judged = JudgedProcess(draw.zone, draw.laws, size) if isinstance(draw, Process) else Widened(draw.zone, draw, size)
@@ -161,7 +161,6 @@ def _size(scene: Scene, own: Stated, drawing: Drawing, zone: Zone) -> SizedBy | 
 def enveloped(size: SizedBy, drawing: Drawing, feature: str, form: float) -> SizedBy:
     """A size that bounds the form of its feature, whose tolerance of form is so wide [mm]."""
     shape, bonus = drawing.kind(feature).shape, size.bonus
-    assert isinstance(shape, Axis | Slot)
     return replace(size, bonus=replace(bonus, envelope=Envelope(bonus.low, bonus.high, shape.inner, form)))
 
 
@@ -174,7 +173,6 @@ def sized_by(drawing: Drawing, feature: str, modifier: Modifier) -> SizedBy:
     (own,) = drawing.of(feature, SizeSpec)
     spec, shape = own.spec, drawing.kind(feature).shape
     assert isinstance(spec, SizeSpec)
-    assert isinstance(shape, Axis | Slot)
     law = spec.distribution.resolve(drawing.scene.files)
     limits = law.limits if spec.limits is None else tuple(own.internal for own in spec.limits)
     if limits is None:

@@ -32,7 +32,7 @@ from tol3d.assembly.grammar.tolerances.location import (
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import ENVELOPED, LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ZoneSpec
-from tol3d.assembly.model import Axis, Plane, Point, RoundPlane
+from tol3d.assembly.model import Axis
 from tol3d.assembly.model.dimension import longer
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -201,7 +201,7 @@ class Drawing:
                 return of_section(forms, shape, room)
             case TotalRunOutSpec() | ProfileSpec() if isinstance(shape, Axis):
                 return of_total_run_out(forms, shape, room)
-            case ProfileSpec() if isinstance(shape, Point) and shape.diameter is not None:
+            case ProfileSpec() if shape.diameter is not None:
                 return of_section(forms, shape, room)
         return of_location(forms, shape, room)
 
@@ -229,7 +229,7 @@ class Drawing:
             return width
         shape, radius = self.kind(own.feature).shape, own.spec.radius
         left = max(width - self.form(own.feature, own.spec), 0.0)
-        if radius is None or not isinstance(shape, Plane | RoundPlane):  # of another feature: refused elsewhere
+        if radius is None or shape.surface != "plane":  # of another feature: refused elsewhere
             return left
         return left * max(shape.reach) / radius.internal
 

@@ -31,7 +31,6 @@ from tol3d.assembly.grammar.tolerances.location import (
 from tol3d.assembly.grammar.tolerances.plus_minus import ENVELOPED, PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ProcessLawSpec, are_alike
 from tol3d.assembly.model import RoundPlane
-from tol3d.assembly.model.feature import nominal_size
 from tol3d.files import Files
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, another_size, larger_end
@@ -324,7 +323,7 @@ def implausible_sizes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     drawing = Drawing(scene)
     for name, spec in scene.of(FeatureTolerance).items():
         feature = drawing.kind(spec.of)
-        if (nominal := nominal_size(feature.shape)) is None:
+        if (nominal := feature.shape.nominal_size) is None:
             continue
         of = f"the {'width' if feature.kind == 'slot' else 'diameter'} of {spec.of!r}"
         for field, deviation in _deviations(spec, scene.files):
@@ -361,7 +360,7 @@ def implausible_leans(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     drawing = Drawing(scene)
     for name, spec in scene.of(OrientationSpec).items():
         shape = drawing.kind(spec.of).shape
-        reach = 2.0 * shape.radius if isinstance(shape, RoundPlane) else float(np.ptp(shape.ends, axis=0).max())
+        reach = float(np.ptp(shape.ends, axis=0).max())
         if spec.zone.projected is not None:
             reach = spec.zone.projected.internal
         if reach > 0.0 and (lean := math.atan(spec.zone.size / reach)) > MOST_LEAN:
@@ -387,7 +386,7 @@ def fits_of_other_sizes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Tolerance classes of sizes that are taken at another nominal size than the feature has."""
     drawing = Drawing(scene)
     for name, spec in scene.of(SizeSpec).items():
-        nominal = nominal_size(drawing.kind(spec.of).shape)
+        nominal = drawing.kind(spec.of).shape.nominal_size
         if nominal and (sentence := another_size(spec.distribution.drawn, nominal, f"size of {spec.of!r}")):
             yield ("tolerances", name, "distribution", "of"), sentence
 

@@ -15,7 +15,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     RoundnessSpec,
     StraightnessSpec,
 )
-from tol3d.assembly.model import Axis, Plane, RoundPlane
+from tol3d.assembly.model import Axis
 from tol3d.assembly.model.feature import Shape
 
 Forms = Sequence[FormSpec]
@@ -39,10 +39,9 @@ def whole_form(spec: FormSpec, shape: Shape, room: float = math.inf) -> float:
 
 def units(spec: FormSpec, shape: Shape) -> Sequence[tuple[float, float]]:
     """Lengths of a feature, and the unit of each for which a form is stated [mm]; none where it is of the whole."""
-    if isinstance(spec, FlatnessSpec) and spec.per is not None and isinstance(shape, Plane | RoundPlane):
+    if isinstance(spec, FlatnessSpec) and spec.per is not None and shape.surface == "plane":
         if len(spec.per) == 1:
-            longest = math.hypot(*shape.reach) if isinstance(shape, Plane) else shape.radius
-            return ((2.0 * longest, spec.per[0].internal),)
+            return ((shape.longest, spec.per[0].internal),)
         return tuple((2.0 * reach, own.internal) for reach, own in zip(shape.reach, spec.per, strict=True))
     if isinstance(spec, StraightnessSpec) and spec.per is not None:
         return ((_length(spec, shape), spec.per.internal),)
@@ -51,15 +50,7 @@ def units(spec: FormSpec, shape: Shape) -> Sequence[tuple[float, float]]:
 
 def _length(spec: StraightnessSpec, shape: Shape) -> float:
     """Length of an axis, or of the line of a plane through its middle [mm]; `lines` of a plane are in its frame."""
-    match shape:
-        case Axis():
-            return shape.length
-        case RoundPlane():
-            return 2.0 * shape.radius
-        case Plane():
-            along = shape.reach[0 if spec.lines != "y" else 1]
-            return 2.0 * along
-    return 0.0
+    return 2.0 * shape.reach[-1 if spec.lines == "y" else 0] if shape.reach else 0.0
 
 
 def of_location(forms: Forms, shape: Shape, room: float) -> float:

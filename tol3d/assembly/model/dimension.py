@@ -5,7 +5,7 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from tol3d.assembly.model.feature import Axis, Cone, Plane, Point, RoundPlane, Shape
+from tol3d.assembly.model.feature import Shape
 from tol3d.numerics.arrays import Array
 
 LEAST: Final = 1e-6
@@ -50,10 +50,9 @@ def _off(at: Array, datum: Sequence[Placed]) -> Array:
         line = datum[1].frame[:3, 3] - datum[0].frame[:3, 3]
         return np.asarray(off - line * (line @ off) / (line @ line or 1.0))
     z = datum[0].frame[:3, 2]
-    match datum[0].shape:
-        case Plane() | RoundPlane():
+    match datum[0].shape.surface:
+        case "plane":
             return np.asarray(z * (z @ off))
-        case Cone() | Point():
-            return np.asarray(off)
-        case Axis():
+        case "axis":
             return np.asarray(off - z * (z @ off))
+    return off

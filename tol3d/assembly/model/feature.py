@@ -1,18 +1,67 @@
 """A feature of a part: its name on the drawing, its nominal place, and the contributions that move it."""
 
 import math
+from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.values import Valued
 
+Surface = Literal["point", "axis", "cone", "plane"]
+"""Surface that others touch or mate, apart from its size: of a sphere its centre, of a cylinder its axis."""
+
+Displaced = Callable[[Array], Array]
+"""Displacement (3, ...) of a point (3,) of a feature, both in its frame [mm]."""
+
+
+class Facts:
+    """Facts that every shape tells of itself; as given here, those of one that has no size and no direction."""
+
+    components: ClassVar[tuple[str, ...]]
+    """Components of its deviation [mm]."""
+    origin_by: ClassVar[Array]
+    """(3, components): components -> displacement of its origin, in its frame."""
+    surface: ClassVar[Surface]
+    located: ClassVar[slice]
+    """Axes of its frame along which its position counts at its ends."""
+    held: ClassVar[slice]
+    """Axes of its frame along which a datum holds its origin."""
+    facing: ClassVar[str] = ""
+    """Word before the direction of its z."""
+
+    @property
+    def inner(self) -> bool:
+        """True if its material is outside it."""
+        return False
+
+    @property
+    def diameter(self) -> float | None:
+        """Nominal [mm]; None of a shape without one."""
+        return None
+
+    @property
+    def nominal_size(self) -> float | None:
+        """Diameter or width [mm], of a cone at its middle; None of a shape without one."""
+        return self.diameter
+
+    @property
+    def longest(self) -> float:
+        """Longest line in it [mm]."""
+        return 0.0
+
+    @property
+    def growth_centre(self) -> float:
+        """Place along z of the point about which it grows into a similar shape, from its middle [mm]."""
+        return 0.0
+
 
 @dataclass(frozen=True)
-class Point:
+class Point(Facts):
     """A point; z of its frame is the direction in which it touches, if it has one.
 
     Args:
@@ -24,15 +73,56 @@ class Point:
     inner: bool = False
 
     components: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    origin_by: ClassVar[Array] = np.eye(3)
+    surface: ClassVar[Surface] = "point"
+    located: ClassVar[slice] = slice(0, 3)
+    held: ClassVar[slice] = located
+
+    @property
+    def words(self) -> str:
+        """Its kind and sizes."""
+        return "point" if self.diameter is None else f"{'socket' if self.inner else 'ball'} ⌀{self.diameter:g} mm"
+
+    @property
+    def reach(self) -> tuple[float, ...]:
+        """From its middle to where its components are told, along each direction in which it extends: none."""
+        return ()
 
     @cached_property
     def ends(self) -> Array:
         """Points at which its position is evaluated, one (1, 3), in its frame [mm]."""
         return np.zeros((1, 3))
 
+    def moved(self, displaced: Displaced) -> Array:
+        """Its components (components, ...) as its points are displaced."""
+        return displaced(np.zeros(3))
+
+
+class Flat(Facts):
+    """Facts that flat faces of any outline have in common."""
+
+    components: ClassVar[tuple[str, ...]] = ("offset", "rise x", "rise y")
+    """Height at the middle along z; heights at the ends of +x and of +y less that at the middle [mm]."""
+    origin_by: ClassVar[Array] = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    surface: ClassVar[Surface] = "plane"
+    located: ClassVar[slice] = slice(2, 3)
+    held: ClassVar[slice] = located
+    facing: ClassVar[str] = "facing"
+
+    @property
+    @abstractmethod
+    def reach(self) -> tuple[float, float]:
+        """From the middle to where the rises are, along x and y [mm]."""
+
+    def moved(self, displaced: Displaced) -> Array:
+        """See Point."""
+        middle, (x, y) = displaced(np.zeros(3)), self.reach
+        rises = [(displaced(end) - middle)[2] for end in (np.array([x, 0.0, 0.0]), np.array([0.0, y, 0.0]))]
+        return np.stack([middle[2], *rises])
+
 
 @dataclass(frozen=True)
-class Plane:
+class Plane(Flat):
     """A flat rectangle.
 
     Args:
@@ -41,13 +131,21 @@ class Plane:
 
     extent: tuple[float, float]
 
-    components: ClassVar[tuple[str, ...]] = ("offset", "rise x", "rise y")
-    """Height at the middle along z; heights at the ends of +x and of +y less that at the middle [mm]."""
+    @property
+    def words(self) -> str:
+        """See Point."""
+        a, b = self.extent
+        return f"plane {a:g} × {b:g} mm"
 
     @property
     def reach(self) -> tuple[float, float]:
         """From the middle to where the rises are, along x and y [mm]."""
         return self.extent[0] / 2, self.extent[1] / 2
+
+    @property
+    def longest(self) -> float:
+        """Its diagonal [mm]."""
+        return 2.0 * math.hypot(*self.reach)
 
     @cached_property
     def ends(self) -> Array:
@@ -69,9 +167,22 @@ class Slot(Plane):
     width: float
     inner: bool = True
 
+    facing: ClassVar[str] = "across"
+
+    @property
+    def words(self) -> str:
+        """See Point."""
+        a, b = self.extent
+        return f"{'slot' if self.inner else 'tab'} {self.width:g} mm wide, {a:g} × {b:g} mm"
+
+    @property
+    def nominal_size(self) -> float:
+        """Its width [mm]."""
+        return self.width
+
 
 @dataclass(frozen=True)
-class RoundPlane:
+class RoundPlane(Flat):
     """A flat disc.
 
     Args:
@@ -80,16 +191,29 @@ class RoundPlane:
 
     radius: float
 
-    components: ClassVar[tuple[str, ...]] = Plane.components
+    @property
+    def words(self) -> str:
+        """See Point."""
+        return f"plane, radius {self.radius:g} mm"
 
     @property
     def reach(self) -> tuple[float, float]:
         """From the middle to where the rises are, along x and y [mm]."""
         return self.radius, self.radius
 
+    @property
+    def longest(self) -> float:
+        """Its diameter [mm]."""
+        return 2.0 * self.radius
+
+    @cached_property
+    def ends(self) -> Array:
+        """Ends of its rim along x and y (4, 3), in its frame [mm]."""
+        return self.radius * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+
 
 @dataclass(frozen=True)
-class Axis:
+class Axis(Facts):
     """The axis of a cylinder, or of a pattern.
 
     Args:
@@ -104,11 +228,37 @@ class Axis:
 
     components: ClassVar[tuple[str, ...]] = ("start x", "start y", "end x", "end y")
     """Offsets of its ends at z = -length/2 and at z = +length/2 [mm]; the axis passes through both."""
+    origin_by: ClassVar[Array] = 0.5 * np.array([[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.0]])
+    surface: ClassVar[Surface] = "axis"
+    located: ClassVar[slice] = slice(0, 2)
+    held: ClassVar[slice] = located
+    facing: ClassVar[str] = "along"
+
+    @property
+    def words(self) -> str:
+        """See Point."""
+        if self.diameter is None:
+            return f"axis, {self.length:g} mm long"
+        return f"{'hole' if self.inner else 'pin'} ⌀{self.diameter:g} mm, {self.length:g} mm long"
+
+    @property
+    def reach(self) -> tuple[float, ...]:
+        """From its middle to its end along z [mm]."""
+        return (self.length / 2,)
+
+    @property
+    def longest(self) -> float:
+        """Its length [mm]."""
+        return self.length
 
     @cached_property
     def ends(self) -> Array:
         """Its ends (2, 3), in its frame [mm]."""
         return np.array([[0.0, 0.0, -self.length / 2], [0.0, 0.0, self.length / 2]])
+
+    def moved(self, displaced: Displaced) -> Array:
+        """See Point."""
+        return np.concatenate([displaced(end)[:2] for end in self.ends])
 
 
 @dataclass(frozen=True)
@@ -124,6 +274,30 @@ class Cone(Axis):
 
     components: ClassVar[tuple[str, ...]] = (*Axis.components, "along")
     """Those of its axis, and the shift of the cone along it [mm]."""
+    origin_by: ClassVar[Array] = np.column_stack([Axis.origin_by, [0.0, 0.0, 1.0]])
+    surface: ClassVar[Surface] = "cone"
+    held: ClassVar[slice] = slice(0, 3)
+
+    @property
+    def words(self) -> str:
+        """See Point."""
+        (start, end), angle = self.diameters, math.degrees(abs(self.angle))
+        word = "conical hole" if self.inner else "cone"
+        return f"{word} ⌀{start:.6g} to ⌀{end:.6g} mm, half angle {angle:.4g} deg, {self.length:g} mm long"
+
+    @property
+    def nominal_size(self) -> float:
+        """Its diameter at its middle [mm]."""
+        return self.middle_diameter
+
+    @property
+    def growth_centre(self) -> float:
+        """Place of its apex."""
+        return self.apex
+
+    def moved(self, displaced: Displaced) -> Array:
+        """See Point."""
+        return np.concatenate([super().moved(displaced), displaced(np.zeros(3))[2:]])
 
     @property
     def middle_diameter(self) -> float:
@@ -164,18 +338,6 @@ class Cone(Axis):
 
 
 Shape = Point | Plane | RoundPlane | Axis
-
-
-def nominal_size(shape: Shape) -> float | None:
-    """Diameter or width [mm], of a cone at its middle; None of a shape without one."""
-    match shape:
-        case Cone():
-            return shape.middle_diameter
-        case Axis() | Point():
-            return shape.diameter
-        case Slot():
-            return shape.width
-    return None
 
 
 @dataclass(frozen=True, eq=False)

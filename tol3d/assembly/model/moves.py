@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Final, Literal
 
-from tol3d.assembly.model.feature import Axis, Contribution, Plane, Point, RoundPlane, Shape
+from tol3d.assembly.model.feature import Contribution, Shape
 from tol3d.assembly.model.move import Acts, Move, PartMove
 from tol3d.numerics.arrays import Array
 
@@ -60,25 +60,20 @@ class Touch(PartMove):
         return f"{len(self.contacts)} contacts"
 
 
-def is_inner(shape: Shape) -> bool:
-    """True for a bore or a socket."""
-    return isinstance(shape, Axis | Point) and shape.inner
-
-
 def unfit_surfaces(start: Shape, end: Shape) -> str:
     """Why two surfaces have no common normal, in words; "" where they have one."""
-    if any(isinstance(own, Axis) and own.diameter is None for own in (start, end)):
+    if any(own.surface in ("axis", "cone") and own.diameter is None for own in (start, end)):
         return "expected a cylinder, got an axis without a diameter"
-    if [getattr(own, "diameter", None) for own in (start, end)] == [None, None]:
+    if start.diameter is None and end.diameter is None:
         return "expected a cylinder or a sphere on one side at least"
-    if is_inner(start) and is_inner(end):
+    if start.inner and end.inner:
         return "expected one of them to lie inside the other, got two holes"
-    if not is_inner(start) and not is_inner(end):
+    if not start.inner and not end.inner:
         return ""
-    hole, other = (start, end) if is_inner(start) else (end, start)
-    if isinstance(other, Plane | RoundPlane):
+    hole, other = (start, end) if start.inner else (end, start)
+    if other.surface == "plane":
         return "expected what lies in the hole, got a plane"
-    if isinstance(hole, Point) and isinstance(other, Axis):
+    if (hole.surface, other.surface) == ("point", "axis"):
         return "expected a sphere or a point in a socket, got a cylinder"
     return ""
 
@@ -86,10 +81,10 @@ def unfit_surfaces(start: Shape, end: Shape) -> str:
 def unfit_for_contact(moving: Shape, target: Shape) -> str:
     """Why two surfaces do not touch as a `Contact` asks, in words; "" where they do."""
     words = unfit_surfaces(moving, target)
-    if words or is_inner(moving) == is_inner(target):
+    if words or moving.inner == target.inner:
         return words
-    hole, other = (moving, target) if is_inner(moving) else (target, moving)
-    room, size = getattr(hole, "diameter", None) or 0.0, getattr(other, "diameter", None) or 0.0
+    hole, other = (moving, target) if moving.inner else (target, moving)
+    room, size = hole.diameter or 0.0, other.diameter or 0.0
     return "" if size < room else f"expected less than the {room:g} mm of the hole in which it lies, got {size:g} mm"
 
 

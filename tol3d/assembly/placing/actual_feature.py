@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from tol3d.assembly.model.feature import Axis, Contribution, Feature, Plane, RoundPlane, nominal_size
-from tol3d.assembly.placing.poses import Pose, dot, least_rotation, product, rotated, unit
+from tol3d.assembly.model.feature import Axis, Contribution, Feature, Point, RoundPlane
+from tol3d.assembly.placing.poses import Pose, dot, least_rotation, length, product, rotated, square_to, unit
 from tol3d.numerics.arrays import Array
 
 _Z = np.array([[0.0], [0.0], [1.0]])
@@ -33,7 +33,7 @@ def total(contributions: Sequence[Contribution], components: int, columns: Array
 
 @dataclass(frozen=True, eq=False)
 class ActualFeature:
-    """A feature in its trials, in the frame in which `base` has its nominal frame.
+    """A feature in its trials, in the frame in which `base` has its nominal frame; as given here, a point.
 
     Args:
         feature: the feature.
@@ -55,12 +55,7 @@ class ActualFeature:
 
     @cached_property
     def _tilted(self) -> Array:
-        shape = self.feature.shape
-        if isinstance(shape, Axis):
-            return unit(self.span[0])
-        if isinstance(shape, (Plane, RoundPlane)):
-            (a, b), (along_x, along_y) = shape.reach, self.span
-            return unit(np.stack(np.broadcast_arrays(-_slope(along_x[2], a), -_slope(along_y[2], b), np.ones(1))))
+        """z of its frame before the turn of `base` (3, n)."""
         return _Z
 
     @cached_property
@@ -83,14 +78,7 @@ class ActualFeature:
     @property
     def ends(self) -> list[Array]:
         """Points at which its position is evaluated, each (3, n) [mm]; of a disc, the ends of its reaches."""
-        if not self.spans:
-            return [self.origin]
-        if len(self.spans) == 1:
-            return [self.origin - self.spans[0], self.origin + self.spans[0]]
-        x, y = self.spans
-        if isinstance(self.feature.shape, RoundPlane):
-            return [self.origin + x, self.origin + y, self.origin - x, self.origin - y]
-        return [self.origin + x + y, self.origin - x + y, self.origin - x - y, self.origin + x - y]
+        return [self.origin]
 
     def moved(self, pose: Pose) -> "ActualFeature":
         """It in another frame, to which the pose takes its own."""
@@ -98,23 +86,87 @@ class ActualFeature:
 
     def rise(self, direction: Array) -> Array:
         """Extent over its origin along a direction (3, n), in the frame of `base` [mm]."""
-        heights = [np.abs(dot(direction, span)) for span in self.spans]
-        if not heights:
-            return np.zeros(1)
-        if isinstance(self.feature.shape, RoundPlane):
-            return np.asarray(np.sqrt(heights[0] * heights[0] + heights[1] * heights[1]))
-        return sum(heights[1:], start=heights[0])
+        return np.zeros(1)
 
     def at(self, target: Array) -> Array:
         """A point of a plane or an axis, stated in its frame (3,), as high or far aside as it is there (3, n) [mm]."""
-        shape = self.feature.shape
-        if isinstance(shape, Axis):
-            return np.asarray(self.origin + 2.0 * target[2] / shape.length * self.spans[0])
-        if not isinstance(shape, (Plane, RoundPlane)):
-            return self.base.point(self.centre + np.reshape(target, (3, 1)))
-        (a, b), (along_x, along_y) = shape.reach, self.spans
+        return self.base.point(self.centre + np.reshape(target, (3, 1)))
+
+    def counted(self, aside: Array, z: Array) -> Array:
+        """The part of an offset (3, n) that counts in its position, whose nominal z is (3, 1): of a point all of it."""
+        return aside
+
+    def lean(self, z: Array) -> Array:
+        """Width (n,) of the zone along a nominal z (3, 1) that holds its direction [mm]; 0 of a point."""
+        return np.zeros(1)
+
+
+class ActualAxis(ActualFeature):
+    """An axis in its trials."""
+
+    @cached_property
+    def _tilted(self) -> Array:
+        return unit(self.span[0])
+
+    @property
+    def ends(self) -> list[Array]:
+        return [self.origin - self.spans[0], self.origin + self.spans[0]]
+
+    def rise(self, direction: Array) -> Array:
+        return np.abs(dot(direction, self.spans[0]))
+
+    def at(self, target: Array) -> Array:
+        """See ActualFeature; of its two coordinates across none counts."""
+        (half,) = self.feature.shape.reach
+        return np.asarray(self.origin + target[2] / half * self.spans[0])
+
+    def counted(self, aside: Array, z: Array) -> Array:
+        return square_to(aside, z)
+
+    def lean(self, z: Array) -> Array:
+        return 2.0 * length(square_to(self.spans[0], z))
+
+
+class ActualPlane(ActualFeature):
+    """A rectangle in its trials."""
+
+    @cached_property
+    def _tilted(self) -> Array:
+        (a, b), (along_x, along_y) = self.feature.shape.reach, self.span
+        return unit(np.stack(np.broadcast_arrays(-_slope(along_x[2], a), -_slope(along_y[2], b), np.ones(1))))
+
+    @property
+    def ends(self) -> list[Array]:
+        x, y = self.spans
+        return [self.origin + x + y, self.origin - x + y, self.origin - x - y, self.origin + x - y]
+
+    def rise(self, direction: Array) -> Array:
+        x, y = (np.abs(dot(direction, span)) for span in self.spans)
+        return x + y
+
+    def at(self, target: Array) -> Array:
+        (a, b), (along_x, along_y) = self.feature.shape.reach, self.spans
         lifted = self.origin + _slope(1.0, a) * target[0] * along_x + _slope(1.0, b) * target[1] * along_y
         return np.asarray(lifted + target[2] * self.direction)
+
+    def counted(self, aside: Array, z: Array) -> Array:
+        return dot(aside, z) * z
+
+    def lean(self, z: Array) -> Array:
+        return 2.0 * self.rise(z)
+
+
+class ActualDisc(ActualPlane):
+    """A disc in its trials."""
+
+    @property
+    def ends(self) -> list[Array]:
+        x, y = self.spans
+        return [self.origin + x, self.origin + y, self.origin - x, self.origin - y]
+
+    def rise(self, direction: Array) -> Array:
+        x, y = (np.abs(dot(direction, span)) for span in self.spans)
+        return np.asarray(np.sqrt(x * x + y * y))
 
 
 def _slope(rise: Array | float, reach: float) -> Array:
@@ -149,26 +201,23 @@ def _deviating(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
     if isinstance(shape, Axis):
         start_x, start_y, end_x, end_y, *along = moved
         middle = _vector((start_x + end_x) / 2, (start_y + end_y) / 2, along[0] if along else 0.0)
-        return ActualFeature(
-            feature, base, middle, (_vector((end_x - start_x) / 2, (end_y - start_y) / 2, shape.length / 2),)
-        )
-    if isinstance(shape, (Plane, RoundPlane)):
-        offset, rise_x, rise_y = moved
-        a, b = shape.reach
-        return ActualFeature(
-            feature, base, _vector(0.0, 0.0, offset), (_vector(a, 0.0, rise_x), _vector(0.0, b, rise_y))
-        )
-    return ActualFeature(feature, base, _vector(*moved), ())
+        half = _vector((end_x - start_x) / 2, (end_y - start_y) / 2, shape.length / 2)
+        return ActualAxis(feature, base, middle, (half,))
+    if isinstance(shape, Point):
+        return ActualFeature(feature, base, _vector(*moved), ())
+    (offset, rise_x, rise_y), (a, b) = moved, shape.reach
+    kind = ActualDisc if isinstance(shape, RoundPlane) else ActualPlane
+    return kind(feature, base, _vector(0.0, 0.0, offset), (_vector(a, 0.0, rise_x), _vector(0.0, b, rise_y)))
 
 
 def actual_size(feature: Feature, columns: Array) -> Array:
     """Its diameter or width in its trials (n,) or (1,) [mm]; of a feature that has one."""
-    return (nominal_size(feature.shape) or 0.0) + total(feature.size_by, 1, columns)[0]
+    return (feature.shape.nominal_size or 0.0) + total(feature.size_by, 1, columns)[0]
 
 
 def mating_size(feature: Feature, columns: Array) -> Array:
     """Its diameter or width that a fit sees, form included, in its trials (n,) or (1,) [mm]."""
-    return (nominal_size(feature.shape) or 0.0) + total(feature.mating_by, 1, columns)[0]
+    return (feature.shape.nominal_size or 0.0) + total(feature.mating_by, 1, columns)[0]
 
 
 def _vector(x: Array | float, y: Array | float, z: Array | float) -> Array:

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Cone, Datum, DatumFrame, Part, Plane, RoundPlane, Slot
+from tol3d.assembly.model import Axis, Cone, Datum, DatumFrame, Part, Point, Slot
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual, nominally, total
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
@@ -193,7 +193,7 @@ def _single(datum: Datum, k: int, own: ActualFeature, simulator: ActualFeature) 
     if isinstance(shape, Axis):
         held: Held = "all" if isinstance(shape, Cone) else "across"
         yield (held, "direction"), Seat(own.origin, simulator.origin, own.direction, simulator.direction)
-    elif not isinstance(shape, (Plane, RoundPlane)):
+    elif isinstance(shape, Point):
         yield ("all", "none"), Seat(own.origin, simulator.origin)
     elif datum.simulator == "targets" and datum.targets is not None and k > 0:
         for target in datum.targets:

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Axis, Engage, Engagement, Mate
+from tol3d.assembly.model import Assembly, Engage, Engagement, Mate
 from tol3d.assembly.model.statuses import FITS, NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.alignment import Seat
@@ -251,11 +251,10 @@ def engaging(move: Engage, nominal: World) -> Engaging:
             continue
         frame, inner_moves = world.placed(own.inner).pose, world.part_of(own.inner) in world.bodies[move.part]
         sign = -1.0 if inner_moves else 1.0  # an offset is of the outer one
-        x, y, z = (sign * frame.turn[:, k, 0] for k in range(3))
+        sides = [sign * frame.turn[:, k, 0] for k in range(3)][world.assembly.features[own.inner].shape.located]
         for its in own.outer_places:
             places.append(world.placed(own.outer).at(its)[:, 0])
-            flat = not isinstance(world.assembly.features[own.inner].shape, Axis)
-            ways.append([z, np.zeros(3)] if flat else [x, y])
+            ways.append([*sides, np.zeros(3)][:2])
     at = np.array(places)
     middle = at.mean(axis=0)
     reach = max(float(np.linalg.norm(at - middle, axis=1).max()), 1.0)

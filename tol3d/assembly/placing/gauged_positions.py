@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Measured, RoundPlane
+from tol3d.assembly.model import Measured
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.gauged_frames import MET, ROUNDS, GaugedFrame
 from tol3d.assembly.placing.poses import IDENTITY, Pose, column, dot, full
@@ -51,11 +51,10 @@ def inspected(measured: Measured, world: World) -> Inspected:
     assert isinstance(gauged, GaugedFrame)
     feature = world.assembly.features[name]
     frame, shape = feature.frame, feature.shape
-    assert not isinstance(shape, RoundPlane)  # across a round face nothing is located
     if measured.direction is not None:
         directions = np.linalg.svd(measured.direction[None])[2][1:]
     else:
-        directions = frame[:3, :2].T if isinstance(shape, Axis) else frame[:3, 2:3].T
+        directions = frame[:3, shape.located].T
     places = shape.ends @ frame[:3, :3].T + frame[:3, 3]
     rows = np.zeros((len(places), 2, gauged.freedoms.shape[1]))
     for k, place in enumerate(places):

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Axis, Cone, Datum, DatumFrame, Feature, Plane, RoundPlane
+from tol3d.assembly.model import Assembly, Axis, Cone, Datum, DatumFrame, Feature, Point
 from tol3d.assembly.placing.actual_feature import nominally
 from tol3d.assembly.placing.asked import Asked, across, direction_rows, frame_in_world, point_rows
 from tol3d.assembly.placing.placer import Placer
@@ -153,7 +153,7 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
         return np.concatenate([_line(at, z), point_rows(at, z[None])])
     if isinstance(features[0].shape, Axis):
         return _line(at, z)
-    if not isinstance(features[0].shape, Plane | RoundPlane):
+    if isinstance(features[0].shape, Point):
         return point_rows(at, np.eye(3))
     if datum.simulator == "targets" and datum.targets is not None and place > 0:
         return np.concatenate([point_rows(at + frame[:3, :3] @ target, z[None]) for target in datum.targets])

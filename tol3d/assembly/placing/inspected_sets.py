@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Cone, Feature, Measured, Plane, Point, RoundPlane
+from tol3d.assembly.model import Axis, Cone, Feature, Measured, RoundPlane
 from tol3d.assembly.placing.actual_feature import actual_size
 from tol3d.assembly.placing.gauged_frames import MET, ROUNDS
 from tol3d.assembly.placing.holding import held_by_datums
@@ -29,16 +29,12 @@ SEEN: Final = 1e-6
 
 def judged(feature: Feature) -> tuple[Array, Array]:
     """Places where a feature is judged (places, 3), in its frame [mm], and the directions (directions, 3)."""
-    match feature.shape:
-        case Axis():
-            return feature.shape.ends, np.eye(3)[:2]
-        case RoundPlane():
-            angles = 2.0 * np.pi * np.arange(RIM) / RIM
-            rim = feature.shape.radius * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
-            return rim, np.eye(3)[2:]
-        case Plane():
-            return feature.shape.ends, np.eye(3)[2:]
-    return np.zeros((1, 3)), np.eye(3)
+    shape = feature.shape
+    directions = np.eye(3)[shape.located]
+    if not isinstance(shape, RoundPlane):
+        return shape.ends, directions
+    angles = 2.0 * np.pi * np.arange(RIM) / RIM
+    return shape.radius * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1), directions
 
 
 def inspected_set(measured: Measured, world: World) -> Array:
@@ -100,7 +96,7 @@ def _offsets(measured: Measured, world: World, pose: Pose) -> Array:
             vector = np.zeros((3 if measured.gauge != "oriented" else 2, world.trials))
             for r, direction in enumerate(directions @ turn.T):
                 vector[r] = dot(column(direction), aside)
-            if isinstance(feature.shape, Plane | RoundPlane):
+            if feature.shape.surface == "plane":
                 vector[0] -= measured.middle
             found.append(vector)
         if measured.surfaces and isinstance(feature.shape, Cone):
@@ -119,7 +115,7 @@ def _radii(measured: Measured, world: World, pose: Pose) -> Iterator[Array]:
             z, nominal = column(feature.frame[:3, 2]), column(feature.frame[:3, 3])
             inward = math.sin(feature.shape.angle) * dot(z, world.on_part(name).moved(pose).origin - nominal)
             own = own - np.abs((inward if feature.shape.inner else -inward) - measured.middle)
-        if measured.surfaces and isinstance(feature.shape, Axis | Point) and feature.shape.diameter is not None:
+        if measured.surfaces and feature.shape.diameter is not None:
             larger = 0.5 * (actual_size(feature, world.columns) - feature.shape.diameter)
             own = own - np.abs((-larger if feature.shape.inner else larger) - measured.middle)
         yield from [own] * len(judged(feature)[0])

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Mate, Point, Relation, Rest
+from tol3d.assembly.model import Assembly, Cone, Feature, Mate, Relation, Rest
 from tol3d.assembly.model.cone_seat import cone_seat, unfit_cones
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
@@ -101,7 +101,7 @@ def mating(move: Mate, nominal: World) -> Mating:
 
 def asked_of(relation: Relation, features: Mapping[str, Feature]) -> tuple[Held, Turning] | None:
     """Constraint by a relation; None if it has none for its two features."""
-    words = _word(features[relation.moving]), _word(features[relation.target])
+    words = features[relation.moving].shape.surface, features[relation.target].shape.surface
     found = ASKED.get((relation.kind, *words))
     if found is not None or relation.kind == "tangent":  # of a cylinder: a cone has no one radius
         return found
@@ -111,28 +111,19 @@ def asked_of(relation: Relation, features: Mapping[str, Feature]) -> tuple[Held,
 
 def _tie(move: Mate, relation: Relation, world: World) -> Tie:
     features = world.assembly.features
-    shapes = _word(features[relation.moving]), _word(features[relation.target])
+    moving, target = features[relation.moving].shape, features[relation.target].shape
     name = f"moves.{move.name}: {relation.kind} of {relation.moving} and {relation.target}"
     asked = asked_of(relation, features)
     if asked is None:
         expected = " or ".join(f"{moving} on {target}" for kind, moving, target in ASKED if kind == relation.kind)
-        raise InputError(f"{name}: expected {expected}, got {shapes[0]} on {shapes[1]}")
-    if relation.kind == "tangent" and getattr(features[relation.moving].shape, "diameter", None) is None:
+        raise InputError(f"{name}: expected {expected}, got {moving.surface} on {target.surface}")
+    if relation.kind == "tangent" and moving.diameter is None:
         raise InputError(f"{name}: expected a diameter of {relation.moving}, got an axis without one")
-    moving, target = features[relation.moving].shape, features[relation.target].shape
     if asked == ("all", "direction") and isinstance(moving, Cone) and isinstance(target, Cone):
         words = unfit_cones(moving, target, _sign(move, relation, world))
         if words:
             raise InputError(f"{name}: {words}")
     return Tie(name, *asked)
-
-
-def _word(feature: Feature) -> str:
-    if isinstance(feature.shape, Point):
-        return "point"
-    if isinstance(feature.shape, Cone):
-        return "cone"
-    return "axis" if isinstance(feature.shape, Axis) else "plane"
 
 
 def _sign(move: Mate, relation: Relation, nominal: World) -> float:
@@ -142,11 +133,11 @@ def _sign(move: Mate, relation: Relation, nominal: World) -> float:
 
 def _seat(move: Mate, relation: Relation, sign: float, world: World) -> Seat:
     moving, target = world.on_body(relation.moving, move.part), world.placed(relation.target)
-    if _is_point(target):
+    if target.feature.shape.surface == "point":
         return Seat(moving.origin, target.origin)
-    if _is_point(moving):
+    if moving.feature.shape.surface == "point":
         return Seat(moving.origin, target.origin, None, target.direction, relation.distance)
-    if relation.kind == "coincident" and isinstance(target.feature.shape, Cone):
+    if relation.kind == "coincident" and target.feature.shape.surface == "cone":
         height = _seated(moving, target, sign, world)
         return Seat(moving.origin, target.origin + height * target.direction, sign * moving.direction, target.direction)
     if relation.kind == "tangent":
@@ -164,10 +155,6 @@ def _seated(moving: ActualFeature, target: ActualFeature, sign: float, world: Wo
     assert seat is not None, "refused before"
     own, its = (total(each.feature.moved_by, 5, world.columns)[4] for each in (moving, target))
     return np.asarray(seat.height + seat.by_moving * own + seat.by_target * its)
-
-
-def _is_point(actual: ActualFeature) -> bool:
-    return isinstance(actual.feature.shape, Point)
 
 
 INDEPENDENT = 1e-6

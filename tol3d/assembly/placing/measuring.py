@@ -9,12 +9,23 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
+from tol3d.assembly.model import Assembly, Measured, RoundPlane
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.gauged_positions import on_gauges
 from tol3d.assembly.placing.gauging import GaugedPattern, position_in_room
-from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector, unit
+from tol3d.assembly.placing.poses import (
+    Codes,
+    column,
+    cross,
+    dot,
+    length,
+    product,
+    rotated,
+    rotation_vector,
+    square_to,
+    unit,
+)
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, gap_of
 from tol3d.assembly.placing.world import World
 from tol3d.contact.openings import opening
@@ -110,10 +121,6 @@ def may_lack(measured: Measured, codes: Mapping[int, Codes]) -> NDArray[np.bool_
     return lacks if measured.minus is None else lacks | may_lack(measured.minus, codes)
 
 
-def _length(vector: Array) -> Array:
-    return np.asarray(np.sqrt(dot(vector, vector)))
-
-
 def _direction(measured: Measured, world: World) -> Array:
     """The measure's direction in the world (3, n), carried by its part or datum frame."""
     part = world.part_of(measured.features[0])
@@ -133,7 +140,7 @@ def _apart(measured: Measured, world: World) -> Array:
 
 def distance(measured: Measured, world: World) -> Array:
     """|p_to - p_from| of the features' origins p in the world; with a direction along it only, see `gap`."""
-    return _length(_apart(measured, world)) if measured.direction is None else gap(measured, world)
+    return length(_apart(measured, world)) if measured.direction is None else gap(measured, world)
 
 
 def gap(measured: Measured, world: World) -> Array:
@@ -155,7 +162,7 @@ def angle(measured: Measured, world: World) -> Array:
     start, end = (world.placed(name).direction for name in measured.features)
     across, along = cross(start, end), dot(start, end)
     if measured.direction is None:
-        return np.asarray(np.arctan2(_length(across), along))
+        return np.asarray(np.arctan2(length(across), along))
     found = np.arctan2(dot(_direction(measured, world), across), along)
     return np.asarray(found + TURN * np.round((_nominal_angle(measured, world.assembly) - found) / TURN))
 
@@ -206,17 +213,15 @@ def position(measured: Measured, world: World) -> Array:
     shape, z = actual.feature.shape, column(frame[:3, 2])
     if isinstance(shape, RoundPlane) and measured.direction is None:
         return 2.0 * (np.abs(dot(z, actual.origin - column(frame[:3, 3]))) + actual.rise(z))
-    nominal = [column(frame[:3, :3] @ end + frame[:3, 3]) for end in _ends(shape)]
+    nominal = [column(frame[:3, :3] @ end + frame[:3, 3]) for end in shape.ends]
     largest = np.zeros(1)
     for end, its_nominal in zip(actual.ends, nominal, strict=True):
         aside = end - its_nominal
         if measured.direction is not None:
-            aside = _across(aside, column(measured.direction))
-        elif isinstance(shape, Axis):
-            aside = _across(aside, z)
-        elif isinstance(shape, (Plane, RoundPlane)):
-            aside = dot(aside, z) * z
-        largest = np.maximum(largest, _length(aside))
+            aside = square_to(aside, column(measured.direction))
+        else:
+            aside = actual.counted(aside, z)
+        largest = np.maximum(largest, length(aside))
     return 2.0 * largest - _bonus(measured, world)
 
 
@@ -242,18 +247,6 @@ def _bonus(measured: Measured, world: World) -> Array:
     return bonuses(measured, world)[0] if measured.bonuses else np.zeros(1)
 
 
-def _ends(shape: Shape) -> Array:
-    """Points at which a shape's position is evaluated, in its frame, in the order of `ActualFeature.ends`."""
-    if isinstance(shape, RoundPlane):
-        a = shape.radius
-        return np.array([[a, 0.0, 0.0], [0.0, a, 0.0], [-a, 0.0, 0.0], [0.0, -a, 0.0]])
-    return shape.ends
-
-
-def _across(vector: Array, direction: Array) -> Array:
-    return vector - dot(vector, direction) * direction
-
-
 def orientation(measured: Measured, world: World) -> Array:
     """Width of the zone that holds the feature and is oriented nominally in `frame`.
 
@@ -264,9 +257,7 @@ def orientation(measured: Measured, world: World) -> Array:
     z = column(frame[:3, 2])
     if measured.direction is not None and actual.spans:
         return 2.0 * np.abs(dot(column(measured.direction), actual.spans[0]))
-    if isinstance(actual.feature.shape, (Plane, RoundPlane)):
-        return 2.0 * actual.rise(z)
-    return 2.0 * _length(_across(actual.spans[0], z)) if actual.spans else np.zeros(1)
+    return actual.lean(z)
 
 
 def flatness(measured: Measured, world: World) -> Array:
@@ -295,7 +286,7 @@ def contact_angle(measured: Measured, world: World) -> Array:
     start, end, *against = (world.placed(name) for name in measured.features)
     normal, _ = common_normal(start, end, parallel=_parallel(measured, world.assembly))
     direction = against[0].direction if against else _direction(measured, world)
-    return np.asarray(np.arctan2(_length(cross(normal, direction)), dot(normal, direction)))
+    return np.asarray(np.arctan2(length(cross(normal, direction)), dot(normal, direction)))
 
 
 def _parallel(measured: Measured, assembly: Assembly) -> bool:
@@ -311,7 +302,7 @@ def turn(measured: Measured, world: World) -> Array:
     """
     start, end = (world.placed(name).pose.turn for name in measured.features)
     vector = rotation_vector(product(end, np.swapaxes(start, 0, 1)))
-    return _length(vector) if measured.direction is None else dot(vector, _direction(measured, world))
+    return length(vector) if measured.direction is None else dot(vector, _direction(measured, world))
 
 
 def lean(measured: Measured, world: World) -> Array:
@@ -321,7 +312,7 @@ def lean(measured: Measured, world: World) -> Array:
     """
     start, end = (world.placed(name).pose.turn[:, 2] for name in measured.features[:2])
     sideways = end - dot(end, start) * start
-    size = _length(sideways)
+    size = length(sideways)
     angle = np.arctan2(size, dot(start, end))
     if measured.direction is None:
         return np.asarray(angle)

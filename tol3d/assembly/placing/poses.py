@@ -33,6 +33,16 @@ def cross(left: Array, right: Array) -> Array:
     )
 
 
+def length(vector: Array) -> Array:
+    """Lengths of vectors (3, ...)."""
+    return np.asarray(np.sqrt(dot(vector, vector)))
+
+
+def square_to(vector: Array, direction: Array) -> Array:
+    """The part of vectors (3, ...) that is square to directions of unit length."""
+    return vector - dot(vector, direction) * direction
+
+
 def unit(vector: Array) -> Array:
     """Vectors of length 1; 0 stays 0."""
     square = dot(vector, vector)

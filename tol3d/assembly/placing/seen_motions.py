@@ -11,7 +11,6 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Plane, RoundPlane
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
@@ -200,10 +199,8 @@ def _least_motions(seen: Array, unseen: Array) -> Array:
 
 def sides_of(nominal: ActualFeature) -> Sequence[Array]:
     """Directions in which a place counts, at most two a cone: two of an axis, one of a plane, three of a point."""
-    frame, shape = nominal.feature.frame[:3, :3].T, nominal.feature.shape
-    if isinstance(shape, Axis):
-        return (frame[:2],)
-    return (frame[2:],) if isinstance(shape, Plane | RoundPlane) else (frame[:2], frame[2:])
+    sides = nominal.feature.frame[:3, nominal.feature.shape.located].T
+    return (sides,) if len(sides) <= 2 else (sides[:2], sides[2:])
 
 
 def _rows_of(end: Array, sides: Array, middle: Array, reach: float) -> Array:

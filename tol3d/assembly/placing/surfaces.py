@@ -1,40 +1,30 @@
 """Surfaces of two features, at least one of them round: common normal, least gap, and distance at contact."""
 
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Plane, Point, RoundPlane, Shape
-from tol3d.assembly.model.moves import is_inner
+from tol3d.assembly.model import RoundPlane, Shape
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.poses import NO_LENGTH, cross, dot, unit
 from tol3d.numerics.arrays import Array
-
-Kind = Literal["point", "line", "plane"]
 
 PARALLEL: Final = 1e-6
 """Sine of the angle of two axes that nominally lie along each other, not across."""
 
 
-def kind_of(shape: Shape) -> Kind:
-    """Kind of a shape, apart from its radius: centre, axis or plane."""
-    if isinstance(shape, Point):
-        return "point"
-    return "plane" if isinstance(shape, Plane | RoundPlane) else "line"
-
-
 def touching_distance(start: ActualFeature, end: ActualFeature, columns: Array) -> Array:
     """The sum of two radii, or their difference where one is inside the other (n,) or (1,) [mm]."""
     radii = [actual_size(own.feature, columns) / 2 for own in (start, end)]
-    if is_inner(start.feature.shape):
+    if start.feature.shape.inner:
         return radii[0] - radii[1]
-    return radii[1] - radii[0] if is_inner(end.feature.shape) else radii[0] + radii[1]
+    return radii[1] - radii[0] if end.feature.shape.inner else radii[0] + radii[1]
 
 
 def is_inside(start: Shape, end: Shape) -> bool:
     """True if one of the two is a bore or a socket, in which the other lies."""
-    return is_inner(start) or is_inner(end)
+    return start.inner or end.inner
 
 
 def gap_of(start: ActualFeature, end: ActualFeature, columns: Array, *, parallel: bool) -> Array:
@@ -52,19 +42,19 @@ def gap_of(start: ActualFeature, end: ActualFeature, columns: Array, *, parallel
         parallel: whether two axes nominally lie along each other.
     """
     touching = touching_distance(start, end, columns)
-    match kind_of(start.feature.shape), kind_of(end.feature.shape):
-        case "plane", "line":
+    match start.feature.shape.surface, end.feature.shape.surface:
+        case "plane", "axis":
             return _above(start, end, touching)
-        case "line", "plane":
+        case "axis", "plane":
             return _above(end, start, touching)
-        case "line", "line" if is_inner(start.feature.shape):
+        case "axis", "axis" if start.feature.shape.inner:
             return np.asarray(touching - np.maximum(*_aside(start, end)[1:]))
-        case "line", "line" if is_inner(end.feature.shape):
+        case "axis", "axis" if end.feature.shape.inner:
             return np.asarray(touching - np.maximum(*_aside(end, start)[1:]))
-        case "line", "line" if parallel:
+        case "axis", "axis" if parallel:
             has_common, *facing = _aside(start, end)
             return np.where(has_common, _between(start, end), np.minimum(*facing)) - touching
-        case "line", "line":
+        case "axis", "axis":
             return _between(start, end) - touching
     gap = common_normal(start, end, parallel=parallel)[1] - touching
     return -gap if is_inside(start.feature.shape, end.feature.shape) else gap
@@ -85,7 +75,7 @@ def _stretch(middle: Array, half: Array, reach: Array | float) -> tuple[Array, A
     return np.maximum(-1.0, np.minimum(*bounds)), np.minimum(1.0, np.maximum(*bounds))
 
 
-def over(plane: Plane | RoundPlane, middle: Array, half: Array) -> tuple[Array, Array]:
+def over(plane: Shape, middle: Array, half: Array) -> tuple[Array, Array]:
     """From where to where an axis, -1 to 1 from end to end, is over a plane (n,), (n,); all of it if it is nowhere.
 
     Args:
@@ -110,7 +100,6 @@ def _above(plane: ActualFeature, line: ActualFeature, radius: Array) -> Array:
     """Least height of a cylinder's lines over a plane (n,) [mm], where its axis is over the plane."""
     normal, apart, (half,) = plane.direction, line.origin - plane.origin, line.spans
     shape, turn, rise = plane.feature.shape, plane.pose.turn, dot(half, normal)
-    assert isinstance(shape, Plane | RoundPlane)
     places = (np.stack(np.broadcast_arrays(*(dot(own, turn[:, k]) for k in (0, 1)))) for own in (apart, half))
     low, high = over(shape, *places)
     sine = np.sqrt(np.maximum(1.0 - rise * rise / dot(half, half), 0.0))
@@ -155,17 +144,17 @@ def common_normal(start: ActualFeature, end: ActualFeature, *, parallel: bool) -
         parallel: whether two axes lie along each other; the middle of `end` counts then.
     """
     apart = end.origin - start.origin
-    match kind_of(start.feature.shape), kind_of(end.feature.shape):
+    match start.feature.shape.surface, end.feature.shape.surface:
         case "plane", _:
             return start.direction, dot(apart, start.direction)
         case _, "plane":
             return -end.direction, -dot(apart, end.direction)
-        case "line", "line" if not parallel:
+        case "axis", "axis" if not parallel:
             normal = unit(cross(start.direction, end.direction))
             normal = normal * np.where(dot(normal, apart) < 0.0, -1.0, 1.0)
             return normal, dot(normal, apart)
-        case "line", _:
+        case "axis", _:
             apart = apart - dot(apart, start.direction) * start.direction
-        case _, "line":
+        case _, "axis":
             apart = apart - dot(apart, end.direction) * end.direction
     return unit(apart), np.asarray(np.sqrt(dot(apart, apart)))

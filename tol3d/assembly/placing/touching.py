@@ -17,7 +17,7 @@ from tol3d.assembly.placing.contact_equations import ALONG, CROSSING
 from tol3d.assembly.placing.freedoms import free_motions, in_words, seen_steps
 from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.poses import Codes, Pose, column, cross, rotated
-from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, is_inside, kind_of, touching_distance
+from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, is_inside, touching_distance
 from tol3d.assembly.placing.touches import lacking_at, touching_poses
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
@@ -32,11 +32,11 @@ NO_DISTANCE: Final = 1e-9
 KINDS: Final = {
     ("point", "plane"): contact_equations.POINT_PLANE,
     ("plane", "point"): contact_equations.PLANE_POINT,
-    ("line", "plane"): contact_equations.LINE_PLANE,
-    ("plane", "line"): contact_equations.PLANE_LINE,
+    ("axis", "plane"): contact_equations.LINE_PLANE,
+    ("plane", "axis"): contact_equations.PLANE_LINE,
     ("point", "point"): contact_equations.POINT_POINT,
-    ("point", "line"): contact_equations.POINT_LINE,
-    ("line", "point"): contact_equations.LINE_POINT,
+    ("point", "axis"): contact_equations.POINT_LINE,
+    ("axis", "point"): contact_equations.LINE_POINT,
 }
 
 
@@ -161,8 +161,8 @@ def _contact(move: Touch, contact: Contact, nominal: World, middle: Array) -> tu
     if words := unfit_for_contact(*shapes):
         raise InputError(f"{name}: {words}")
     apart, sign = (moving.origin - target.origin)[:, 0], 1.0
-    sides = kind_of(shapes[0]), kind_of(shapes[1])
-    if sides == ("line", "line"):
+    sides = shapes[0].surface, shapes[1].surface
+    if sides == ("axis", "axis"):
         normal = cross(moving.direction, target.direction)[:, 0]
         crosses = bool(np.linalg.norm(normal) > PARALLEL)
         if crosses and is_inside(*shapes):

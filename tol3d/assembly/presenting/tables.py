@@ -1,6 +1,5 @@
 """Tables of a scene of an assembly: features with their datum frames, moves."""
 
-import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,7 +8,7 @@ from typing import Annotated, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Plane, Point, RoundPlane, Slot
+from tol3d.assembly.model import Assembly, Feature
 from tol3d.assembly.model.dimension import longer
 from tol3d.assembly.placing.asked import touched
 from tol3d.assembly.placing.holding import Freedoms, HeldFreedoms, held_by, held_by_datums, in_words
@@ -122,7 +121,7 @@ class FeatureRow:
 
     system: AssemblySystem
     feature: Feature
-    shape = Computed(Shows("shape", "words"), lambda own: _shape(own.feature) + _facing(own.system, own.feature))
+    shape = Computed(Shows("shape", "words"), lambda own: own.feature.shape.words + _facing(own.system, own.feature))
     at = Computed(Shows("at [mm]"), lambda own: _place(own.system, own.feature))
     frame = Computed(Shows("lies in the frame of", "words"), lambda own: _frame(own.feature))
     face = Computed(Shows("face", "words", seldom=True), lambda own: own.feature.face or None)
@@ -171,8 +170,7 @@ def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:
 
 def _positive(system: AssemblySystem, feature: Feature, moved: NDArray[np.float64]) -> str:
     """Direction in which a dimension's positive deviation moves a feature, from its effect on the components."""
-    flat, axis = isinstance(feature.shape, Plane | RoundPlane), isinstance(feature.shape, Axis)
-    own = (0.0, 0.0, moved[0]) if flat else (*moved[:2], sum(moved[4:])) if axis else moved
+    own = feature.shape.origin_by @ moved
     along = feature.frame[:3, :3] @ own
     words = f"along {_direction(along / np.linalg.norm(along))}"
     datums = system.assembly.datum_frames[feature.parent].datums if feature.parent else ()
@@ -181,7 +179,7 @@ def _positive(system: AssemblySystem, feature: Feature, moved: NDArray[np.float6
     if found is not None:
         name = "-".join(own.partition(".")[2] for own in datums[found[0]].features)
         return f"{words}: {'longer, away from' if found[1] > 0 else 'shorter, towards'} {name}"
-    if flat and not isinstance(feature.shape, Slot):
+    if feature.shape.facing == "facing":
         return f"{words}: {'out of' if own[2] > 0.0 else 'into'} the material"
     return words
 
@@ -241,27 +239,6 @@ def rest_blocks(plan: RockingPlacer, assembly: Assembly) -> Sequence[PageItem]:
     return titled(f"contacts of {plan.move.name}, one-sided", declared_table("", rows))
 
 
-def _shape(feature: Feature) -> str:
-    match feature.shape:
-        case Slot(extent=(a, b), width=width, inner=inner):
-            return f"{'slot' if inner else 'tab'} {width:g} mm wide, {a:g} × {b:g} mm"
-        case Plane(extent=(a, b)):
-            return f"plane {a:g} × {b:g} mm"
-        case RoundPlane(radius=radius):
-            return f"plane, radius {radius:g} mm"
-        case Point(diameter=float(diameter), inner=inner):
-            return f"{'socket' if inner else 'ball'} ⌀{diameter:g} mm"
-        case Cone(length=length, inner=inner, diameters=(start, end)):
-            angle = math.degrees(abs(feature.shape.angle))
-            word = "conical hole" if inner else "cone"
-            return f"{word} ⌀{start:.6g} to ⌀{end:.6g} mm, half angle {angle:.4g} deg, {length:g} mm long"
-        case Axis(length=length, diameter=None):
-            return f"axis, {length:g} mm long"
-        case Axis(length=length, diameter=diameter, inner=inner):
-            return f"{'hole' if inner else 'pin'} ⌀{diameter:g} mm, {length:g} mm long"
-    return "point"
-
-
 def _place(system: AssemblySystem, feature: Feature) -> str:
     pose = system.assembly.part[feature.part].pose
     at = pose[:3, :3] @ feature.frame[:3, 3] + pose[:3, 3]
@@ -270,12 +247,10 @@ def _place(system: AssemblySystem, feature: Feature) -> str:
 
 def _facing(system: AssemblySystem, feature: Feature) -> str:
     """The normal or the axis of a feature in the world, in words; "" for a point."""
-    if isinstance(feature.shape, Point):
+    if not feature.shape.facing:
         return ""
     direction = _direction(system.assembly.part[feature.part].pose[:3, :3] @ feature.frame[:3, 2])
-    if isinstance(feature.shape, Slot):
-        return f", across {direction}"
-    return f", along {direction}" if isinstance(feature.shape, Axis) else f", facing {direction}"
+    return f", {feature.shape.facing} {direction}"
 
 
 def _direction(direction: NDArray[np.float64]) -> str:

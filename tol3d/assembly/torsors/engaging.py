@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from tol3d.assembly.model import Axis, Bolt, Engage, Engagement, Floating, Mate
-from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.mating import freedoms_after
 from tol3d.assembly.torsors.room import Room
@@ -88,7 +87,7 @@ def _bolted(own: Engagement, bolt: Bolt, world: World, part: str) -> Sequence[tu
     for name, places in ((own.inner, own.places), (own.outer, own.outer_places)):
         frame, moves = world.frame(name), world.is_of_body(name, part)
         directions = frame[:3, :2].T
-        spare = ((nominal_size(world.assembly.features[name].shape) or 0.0) - bolt.diameter) / 2.0
+        spare = ((world.assembly.features[name].shape.nominal_size or 0.0) - bolt.diameter) / 2.0
         clearance = world.mating_size(name) / 2.0 - radius + world.columns.constants(np.array([spare]))[0]
         for place in places:
             point = frame[:3, :3] @ place + frame[:3, 3]
@@ -108,7 +107,7 @@ def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, A
     directions = frame[:3, :2].T if round_ else np.array([frame[:3, 2], np.zeros(3)])
     relative = world.placed(own.outer) - world.placed(own.inner)
     sign = 1.0 if world.is_of_body(own.outer, part) else -1.0
-    inner, outer = (nominal_size(features[name].shape) or 0.0 for name in (own.inner, own.outer))
+    inner, outer = (features[name].shape.nominal_size or 0.0 for name in (own.inner, own.outer))
     outer *= _leaning(own, world)
     clearance = (world.mating_size(own.inner) - world.mating_size(own.outer)) / 2.0
     clearance = clearance + world.columns.constants(np.array([(inner - outer) / 2.0]))[0]

@@ -139,7 +139,6 @@ def _outermost(feature: Feature, tilt: Array, columns: Columns) -> Array:
     about_x, about_y = tilt
     if isinstance(feature.shape, RoundPlane):
         return columns.largest(feature.shape.radius * tilt[None])
-    assert isinstance(feature.shape, Plane)
     along_x, along_y = feature.shape.reach  # opposite corners stand out and in by the same amount
     return columns.largest(np.array([[along_y * about_x - along_x * about_y], [along_y * about_x + along_x * about_y]]))
 
@@ -178,12 +177,8 @@ def _take_pattern(freedoms: Freedoms, features: Sequence[Displaced]) -> None:
     rows, values = [], []
     for feature, torsor in features:
         turn, shape = feature.frame[:3, :3], feature.shape
-        if isinstance(shape, RoundPlane):
-            ends = shape.radius * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-        else:
-            ends = shape.ends
-        sides = turn.T[:2] if isinstance(shape, Axis) else turn.T if isinstance(shape, Point) else turn.T[2:]
-        for end in ends:
+        sides = turn.T[shape.located]
+        for end in shape.ends:
             rows.append(sides @ shift_at(turn @ end + feature.frame[:3, 3]))
             values.append(rows[-1] @ torsor)
     freedoms.take(np.concatenate(rows), np.concatenate(values))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Measured, RoundPlane
+from tol3d.assembly.model import Measured
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.later_datums import LaterDatums
 from tol3d.assembly.torsors.room import changes, least_slack
@@ -65,11 +65,10 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
     for name, bonus in zip(measured.features, bonuses, strict=True):
         feature = world.assembly.features[name]
         shape = feature.shape
-        assert not isinstance(shape, RoundPlane)
         if measured.direction is not None:
             directions = perpendicular(measured.direction)
         else:
-            directions = feature.frame[:3, :2].T if isinstance(shape, Axis) else feature.frame[:3, 2:3].T
+            directions = feature.frame[:3, shape.located].T
         directions = np.concatenate([directions, np.zeros((2 - len(directions), 3))])
         torsor = world.own[feature.part].feature(name) - gauges.rest
         ways = [directions @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3]) for end in shape.ends]

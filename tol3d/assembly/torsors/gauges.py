@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Datum, Feature, Floating, RoundPlane, Slot
+from tol3d.assembly.model import Datum, Feature, Floating
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.freedoms import Freedoms
@@ -73,7 +73,7 @@ def gauges_room(
     """
     left, rest = kept.left, kept.rest()
     seeing = [feature for feature, _ in datums] + [feature for _, feature, _ in later]
-    points = [feature.frame[:3, :3] @ end + feature.frame[:3, 3] for feature in seeing for end in _ends(feature)]
+    points = [feature.frame[:3, :3] @ end + feature.frame[:3, 3] for feature in seeing for end in feature.shape.ends]
     middle = np.mean(points, axis=0)
     reach = max(1.0, *(float(np.linalg.norm(point - middle)) for point in points))
     to_torsor = np.eye(6)
@@ -81,18 +81,16 @@ def gauges_room(
     to_torsor[3:, 3:] /= reach
     ways, offsets, clearances = [], [], []
     for room, (feature, torsor) in zip(rooms, datums, strict=True):
-        shape, directions = feature.shape, _directions(feature)
-        assert isinstance(shape, Axis | Slot)
-        nominal = (shape.diameter or 0.0) if isinstance(shape, Axis) else shape.width
+        nominal, directions = feature.shape.nominal_size or 0.0, _directions(feature)
         over = size(room.feature) + columns.constants(np.array([nominal - room.virtual]))[0]
-        for end in _ends(feature):
+        for end in feature.shape.ends:
             rows = directions @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3])
             ways.append(rows @ to_torsor)
             offsets.append(rows @ (torsor - rest))
             clearances.append(0.5 * over if room.grows else -0.5 * over)
     free = np.linalg.qr(np.linalg.solve(to_torsor, left))[0]
     for _, feature, _ in later:
-        for end in _ends(feature):
+        for end in feature.shape.ends:
             ways.append(_directions(feature) @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3]) @ to_torsor)
     whole = np.array(ways) @ free
     _, strengths, right = np.linalg.svd(whole.reshape(2 * len(whole), free.shape[1]))
@@ -116,11 +114,5 @@ def _least(seen: Array, unseen: Array, reach: float) -> Array:
 
 def _directions(feature: Feature) -> Array:
     """Directions (2, 3) in which the ends of a feature count; of a plane or slot its normal, and none."""
-    turn = feature.frame[:3, :3].T
-    return turn[:2] if isinstance(feature.shape, Axis) else np.array([turn[2], np.zeros(3)])
-
-
-def _ends(feature: Feature) -> Array:
-    if isinstance(feature.shape, RoundPlane):
-        return feature.shape.radius * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-    return feature.shape.ends
+    sides = feature.frame[:3, feature.shape.located].T
+    return np.concatenate([sides, np.zeros((2 - len(sides), 3))])

@@ -2,11 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from typing import Final, assert_never
+from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Cone, Measured, Plane, Point, RoundPlane
+from tol3d.assembly.model import Cone, Measured, RoundPlane
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.measures import clipped
 from tol3d.assembly.torsors.room import Cones
@@ -64,26 +64,17 @@ def inspected_set(measured: Measured, world: World) -> Array:
         bonus = 0.5 * clipped(measured.bonuses[k], name, world) if measured.bonuses else np.zeros(world.columns.count)
         feature = world.assembly.features[name]
         shape, turn, at = feature.shape, feature.frame[:3, :3], feature.frame[:3, 3]
-        match shape:
-            case Axis():
-                points, directions = shape.ends, turn[:, :2].T
-            case RoundPlane():
-                angles = np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)
-                points = shape.radius * np.array([np.cos(angles), np.sin(angles), np.zeros(AROUND)]).T
-                directions = turn[:, 2:].T
-            case Plane():
-                points, directions = shape.ends, turn[:, 2:].T
-            case Point():
-                points, directions = np.zeros((1, 3)), turn.T
-            case _:
-                assert_never(shape)
+        points, directions = shape.ends, turn[:, shape.located].T
+        if isinstance(shape, RoundPlane):
+            angles = np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)
+            points = shape.radius * np.array([np.cos(angles), np.sin(angles), np.zeros(AROUND)]).T
         directions = np.concatenate([directions, np.zeros((size - len(directions), 3))])
         torsor = world.own[part].feature(name) - frame
         off = np.zeros((size, world.columns.count))
-        if isinstance(shape, Plane | RoundPlane):
+        if shape.surface == "plane":
             off[0, world.columns.constant] = measured.middle
         beside = np.zeros(world.columns.count)
-        if measured.surfaces and isinstance(shape, Axis | Point) and shape.diameter is not None:
+        if measured.surfaces and shape.diameter is not None:
             beside = (-0.5 if shape.inner else 0.5) * world.size(name)
             beside[world.columns.constant] -= measured.middle
         own_ways = [directions @ shift_at(turn @ point + at) for point in points]

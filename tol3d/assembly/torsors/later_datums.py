@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Datum, Feature, Plane, RoundPlane, Slot
+from tol3d.assembly.model import Axis, Datum, Feature, RoundPlane, Slot
 from tol3d.assembly.torsors.room import Room, changes, least_slack
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import height_at, ordered_product, shift_at, turn_about
@@ -173,7 +173,6 @@ def _asked(datum: Datum, feature: Feature, reach: float) -> list[tuple[Array, Ar
         return [((frame[:3, :2].T @ shift_at(centre))[None], none), (direction, none)]
     if datum.targets is not None:
         return [(_alone(height_at(frame[:3, :3] @ own + centre, z))[None], none) for own in datum.targets]
-    assert isinstance(shape, Plane | RoundPlane)
     height, corners = height_at(centre, z), none
     if datum.simulator == "contact":
         a, b = shape.reach

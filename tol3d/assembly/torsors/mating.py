@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Cone, Locate, Mate, Pair, Plane, Point, Relation, Rest, RoundPlane
+from tol3d.assembly.model import Cone, Locate, Mate, Pair, Relation, Rest
 from tol3d.assembly.model.cone_seat import cone_seat
-from tol3d.assembly.model.feature import Shape
 from tol3d.assembly.torsors.features import summed
 from tol3d.assembly.torsors.freedoms import Freedoms, freedom_in_words
 from tol3d.assembly.torsors.torsor import height_at, perpendicular, shift_at, turn_about
@@ -50,7 +49,7 @@ def _take(freedoms: Freedoms, relation: Relation, move: Mate | Rest, world: Worl
     """Take the freedoms of a relation; returns their number."""
     pairing = _Pairing(freedoms, relation, move, world)
     shapes = [world.assembly.features[name].shape for name in (relation.moving, relation.target)]
-    match relation.kind, *map(_word, shapes):
+    match relation.kind, *(own.surface for own in shapes):
         case "coincident" | "distance", "plane", "plane":
             return pairing.parallel() + pairing.height(relation.distance)
         case "coincident" | "distance", "point", "plane":
@@ -69,23 +68,11 @@ def _take(freedoms: Freedoms, relation: Relation, move: Mate | Rest, world: Worl
             return pairing.lying() + pairing.height_of_target(*pairing.radius(relation.target))
     raise InputError(
         f"moves.{move.name}: {relation.kind} of {relation.moving} and {relation.target}: "
-        f"not of {_ARTICLES[_word(shapes[0])]} and {_ARTICLES[_word(shapes[1])]}"
+        f"not of {_ARTICLES[shapes[0].surface]} and {_ARTICLES[shapes[1].surface]}"
     )
 
 
 _ARTICLES = {"point": "a point", "axis": "an axis", "cone": "a cone", "plane": "a plane"}
-
-
-def _word(shape: Shape) -> str:
-    match shape:
-        case Point():
-            return "point"
-        case Cone():
-            return "cone"
-        case Axis():
-            return "axis"
-        case Plane() | RoundPlane():
-            return "plane"
 
 
 class _Pairing:
@@ -158,7 +145,6 @@ class _Pairing:
     def radius(self, name: str) -> tuple[float, Array]:
         """Radius of a cylinder, nominally [mm] and as it varies (columns,)."""
         shape = self._world.assembly.features[name].shape
-        assert isinstance(shape, Axis)
         if shape.diameter is None:
             raise InputError(f"moves.{self._move.name}: {name} has no diameter; expected one, for it is tangent")
         return shape.diameter / 2.0, self._world.size(name) / 2.0

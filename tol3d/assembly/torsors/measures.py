@@ -3,13 +3,11 @@
 import math
 from dataclasses import replace
 from itertools import combinations
-from typing import assert_never
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
+from tol3d.assembly.model import Measured, RoundPlane
 from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
-from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
 from tol3d.assembly.torsors.gauged_positions import on_gauges
@@ -130,7 +128,7 @@ def angle(measured: Measured, world: World) -> Array:
 def size(measured: Measured, world: World) -> Array:
     """Linear."""
     (name,) = measured.features
-    return _constant(world, nominal_size(world.assembly.features[name].shape) or 0.0) + world.size(name)
+    return _constant(world, world.assembly.features[name].shape.nominal_size or 0.0) + world.size(name)
 
 
 def _from_frame(measured: Measured, world: World) -> Array:
@@ -144,7 +142,6 @@ def _at_ends(measured: Measured, world: World, directions: Array) -> Array:
     """Displacements of a feature's ends in its datum frame along directions: (ends, directions, columns) [mm]."""
     (name,) = measured.features
     feature = world.assembly.features[name]
-    assert not isinstance(feature.shape, RoundPlane)
     torsor = _from_frame(measured, world)
     ends = feature.shape.ends @ feature.frame[:3, :3].T + feature.frame[:3, 3]
     return np.array([directions @ shift_at(end) @ torsor for end in ends])
@@ -164,11 +161,10 @@ def _in_room(measured: Measured, room: GaugeRoom, world: World) -> Array:
     """Twice the least distance of the worse end, less the bonus, over the shifts of the gauge in its datum feature."""
     (name,) = measured.features
     shape = world.assembly.features[room.feature].shape
-    assert isinstance(shape, Axis)
     sides = world.assembly.features[room.feature].frame[:3, :2].T
     still = _constant(world, 0.0)
     bonus = clipped(measured.bonuses[0], name, world) if measured.bonuses else still
-    size = world.size(room.feature) + _constant(world, (shape.diameter or 0.0) - room.virtual)
+    size = world.size(room.feature) + _constant(world, (shape.nominal_size or 0.0) - room.virtual)
     forms: list[Array] = []
     counts: list[int] = []
     for own, radius in ((name, 0.5 * bonus), (room.feature, 0.5 * size if room.grows else -0.5 * size)):
@@ -189,19 +185,13 @@ def position(measured: Measured, world: World) -> Array:
         own = clipped(measured.bonuses[0], name, world) if measured.bonuses else _constant(world, 0.0)
         return on_gauges(measured, world, [own])
     feature = world.assembly.features[measured.features[0]]
-    rotation = feature.frame[:3, :3]
-    match feature.shape:
-        case _ if measured.direction is not None:
-            directions = perpendicular(measured.direction)
-        case RoundPlane():
-            middle, rim = _disc(measured, world, feature.shape.radius)
-            return 2.0 * (middle + rim)
-        case Point():
-            directions = np.eye(3)
-        case Axis():
-            directions = rotation[:, :2].T
-        case Plane():
-            directions = rotation[:, 2:].T
+    if measured.direction is not None:
+        directions = perpendicular(measured.direction)
+    elif isinstance(feature.shape, RoundPlane):
+        middle, rim = _disc(measured, world, feature.shape.radius)
+        return 2.0 * (middle + rim)
+    else:
+        directions = feature.frame[:3, feature.shape.located].T
     row: Array = 2.0 * world.columns.largest(_at_ends(measured, world, directions))
     return row - clipped(measured.bonuses[0], measured.features[0], world) if measured.bonuses else row
 
@@ -230,16 +220,9 @@ def clipped(bonus: MaterialBonus, feature: str, world: World) -> Array:
 def orientation(measured: Measured, world: World) -> Array:
     """The largest over pairs of ends, or over the rim of a round face."""
     feature = world.assembly.features[measured.features[0]]
-    rotation = feature.frame[:3, :3]
-    match feature.shape:
-        case RoundPlane():
-            return 2.0 * _disc(measured, world, feature.shape.radius)[1]
-        case Axis():
-            directions = rotation[:, :2].T if measured.direction is None else measured.direction[None]
-        case Plane() | Point():
-            directions = rotation[:, 2:].T
-        case _:
-            assert_never(feature.shape)
+    if isinstance(feature.shape, RoundPlane):
+        return 2.0 * _disc(measured, world, feature.shape.radius)[1]
+    directions = feature.frame[:3, feature.shape.located].T if measured.direction is None else measured.direction[None]
     ends = _at_ends(measured, world, directions)
     return world.columns.largest(np.array([one - other for one, other in combinations(ends, 2)]))
 
@@ -276,7 +259,6 @@ def virtual_clearance(measured: Measured, world: World) -> Array:
         frame, torsor = world.frame(name), world.placed(name)
         shape = world.assembly.features[name].shape
         radius = 0.5 * size(replace(measured, features=(name,)), world)
-        assert isinstance(shape, Axis)
         for end in shape.ends @ frame[:3, :3].T + frame[:3, 3]:
             apart, varying = end - start, shift_at(end) @ torsor - start_varies
             aside = [side @ varying + apart @ turn for side, turn in zip(sides, turning, strict=True)]

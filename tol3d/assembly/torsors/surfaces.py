@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane, Shape
-from tol3d.assembly.model.moves import is_inner, unfit_surfaces
+from tol3d.assembly.model import Measured, RoundPlane, Shape
+from tol3d.assembly.model.moves import unfit_surfaces
 from tol3d.assembly.torsors.columns import ROUNDING, without_rounding
 from tol3d.assembly.torsors.terms import Ends
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at, turn_about
@@ -44,15 +44,21 @@ class Surfaces:
         return features[self.start].shape, features[self.end].shape
 
     @property
+    def surfaces(self) -> tuple[str, str]:
+        """Kinds of surface of both features."""
+        start, end = self.shapes
+        return start.surface, end.surface
+
+    @property
     def is_inside(self) -> bool:
         """True if one lies inside the other."""
-        return any(is_inner(shape) for shape in self.shapes)
+        return any(shape.inner for shape in self.shapes)
 
     @property
     def parallel(self) -> bool:
         """True if two axes are parallel."""
         sine = np.linalg.norm(np.cross(self.world.axis(self.start), self.world.axis(self.end)))
-        return all(isinstance(shape, Axis) for shape in self.shapes) and bool(sine < PARALLEL)
+        return self.surfaces == ("axis", "axis") and bool(sine < PARALLEL)
 
     @property
     def _feet(self) -> tuple[Array, Array]:
@@ -60,7 +66,7 @@ class Surfaces:
         start, end = self.world.origin(self.start), self.world.origin(self.end)
         own, other = self.world.axis(self.start), self.world.axis(self.end)
         apart = end - start
-        match tuple(map(_word, self.shapes)):
+        match self.surfaces:
             case "plane", _:
                 return end - own * (own @ apart), end
             case _, "plane":
@@ -77,9 +83,9 @@ class Surfaces:
     @property
     def _normal(self) -> Array:
         """From the first to the second (3,)."""
-        if isinstance(self.shapes[0], Plane | RoundPlane):
+        if self.surfaces[0] == "plane":
             return self.world.axis(self.start)
-        if isinstance(self.shapes[1], Plane | RoundPlane):
+        if self.surfaces[1] == "plane":
             return -self.world.axis(self.end)
         start, end = self._feet
         return np.asarray((end - start) / np.linalg.norm(end - start))
@@ -103,7 +109,7 @@ class Surfaces:
             InputError: such surfaces.
         """
         words = unfit_surfaces(*self.shapes)
-        if not words and self.is_inside and not self.parallel and all(isinstance(own, Axis) for own in self.shapes):
+        if not words and self.is_inside and not self.parallel and self.surfaces == ("axis", "axis"):
             words = "expected axes that are nominally parallel, for one lies inside the other"
         if words:
             raise InputError(f"{self.start} and {self.end}: {words}")
@@ -115,7 +121,7 @@ class Surfaces:
         varying = [self.world.size(name) for name in (self.start, self.end)]
         signs = (1.0, 1.0)
         if self.is_inside:
-            signs = (1.0, -1.0) if is_inner(self.shapes[0]) else (-1.0, 1.0)
+            signs = (1.0, -1.0) if self.shapes[0].inner else (-1.0, 1.0)
         nominal = sum(sign * size / 2 for sign, size in zip(signs, sizes, strict=True))
         return nominal, signs[0] * varying[0] / 2 + signs[1] * varying[1] / 2
 
@@ -128,7 +134,7 @@ class Surfaces:
         columns, (nominal, varying) = self.world.columns, self.touching()
         self.refuse_unfit()
         touching = varying + columns.constants(np.array([nominal]))[0]
-        if set(map(_word, self.shapes)) == {"plane", "axis"}:
+        if set(self.surfaces) == {"plane", "axis"}:
             return np.asarray(self._extreme(self._over_plane(), is_largest=False) - self._lines(touching))
         distance = self._extreme(self._nearest(), is_largest=self.is_inside)
         return np.asarray(touching - distance if self.is_inside else distance - touching)
@@ -141,11 +147,11 @@ class Surfaces:
         of the other axis nearest to it too.
         """
         (own, other), feet = self.shapes, self._feet
-        if not (isinstance(own, Axis) and isinstance(other, Axis)):
+        if self.surfaces != ("axis", "axis"):
             return [feet]
         start, end = self.world.origin(self.start), self.world.origin(self.end)
         a, b = self.world.axis(self.start), self.world.axis(self.end)
-        halves = own.length / 2, other.length / 2
+        halves = own.reach[0], other.reach[0]
         if self.parallel:
             ends = _common(float(a @ (end - start)), halves)
             return [(start + along * a, end + a * (along - a @ (end - start))) for along in ends]
@@ -162,17 +168,15 @@ class Surfaces:
 
     def _over_plane(self) -> list[tuple[Array, Array]]:
         """Points of an axis and a plane, in their order, at both ends of what of the axis is over the plane, if any."""
-        is_first = isinstance(self.shapes[0], Axis)
+        is_first = self.surfaces[0] == "axis"
         line, plane = (self.start, self.end) if is_first else (self.end, self.start)
         shape, flat = (self.world.assembly.features[name].shape for name in (line, plane))
-        assert isinstance(shape, Axis)
         axis, normal, sides = self.world.axis(line), self.world.axis(plane), self.world.frame(plane)[:3, :2]
         middle, slope = (self.world.origin(line) - self.world.origin(plane)) @ sides, axis @ sides
-        ends = -shape.length / 2, shape.length / 2
+        ends = -shape.reach[0], shape.reach[0]
         if isinstance(flat, RoundPlane):
             limits = [_within(float(middle @ slope), float(slope @ slope), float(middle @ middle) - flat.radius**2)]
         else:
-            assert isinstance(flat, Plane)
             rows = zip(middle.tolist(), slope.tolist(), flat.reach, strict=True)
             limits = [_within(own * by, by * by, own * own - reach * reach) for own, by, reach in rows]
         low, high = max(ends[0], *(own[0] for own in limits)), min(ends[1], *(own[1] for own in limits))
@@ -224,7 +228,7 @@ class Surfaces:
     @property
     def _sides(self) -> Array:
         """Directions (directions, 3) in which centres and axes are apart; none of a plane."""
-        words = tuple(map(_word, self.shapes))
+        words = self.surfaces
         own, other = self.world.axis(self.start), self.world.axis(self.end)
         if "plane" in words:
             return np.zeros((0, 3))
@@ -237,7 +241,7 @@ class Surfaces:
 
     def hinge(self) -> tuple[Array, float] | None:
         """The axis of the tilt of a body that lies along a line, as a turn (1, 6), and its nominal sine."""
-        words = tuple(map(_word, self.shapes))
+        words = self.surfaces
         if words == ("plane", "axis") or words == ("axis", "plane") or self.parallel:
             normal, _, _ = self.checked()
             if words == ("axis", "plane"):
@@ -251,7 +255,7 @@ class Surfaces:
         """The normal from the first to the second (3,), and how it varies (3, columns)."""
         normal, distance, _ = self.checked()
         start, end = self.world.placed(self.start), self.world.placed(self.end)
-        first, second = map(_word, self.shapes)
+        first, second = self.surfaces
         if first == "plane":
             return normal, -cross_matrix(normal) @ start[3:]
         if second == "plane":
@@ -302,16 +306,6 @@ def _distinct(rows: Sequence[Array]) -> list[Array]:
         if not any(np.abs(row - own).max() < ROUNDING for own in kept):
             kept.append(row)
     return kept
-
-
-def _word(shape: Shape) -> str:
-    match shape:
-        case Point():
-            return "point"
-        case Axis():
-            return "axis"
-        case Plane() | RoundPlane():
-            return "plane"
 
 
 def clearance(measured: Measured, world: World) -> Array:

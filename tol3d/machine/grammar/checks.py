@@ -9,7 +9,6 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model.feature import nominal_size
 from tol3d.gearing.grammar.checks import too_thick
 from tol3d.gearing.grammar.parts import ShaftSpec
 from tol3d.machine.grammar.open_chain import OpenChainSpec
@@ -76,7 +75,7 @@ def shafts_thicker_than_bores(scene: Scene) -> Iterator[Problem]:
         if not isinstance(shaft, ShaftSpec):
             continue
         for bore in move.in_:
-            if sentence := too_thick(shaft, nominal_size(drawing.kind(bore).shape), repr(bore)):
+            if sentence := too_thick(shaft, drawing.kind(bore).shape.nominal_size, repr(bore)):
                 yield ("parts", move.shaft, "diameter"), sentence
 
 
