@@ -12,7 +12,7 @@ from typing import Final
 
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features import AxisSpec, ConeSpec, CylinderSpec, FeatureUnion, PointSpec, SphereSpec
+from tol3d.assembly.grammar.features import AxisSpec, ConeSpec, CylinderSpec, FeatureUnion
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.forms import of_location, of_section, of_total_run_out
 from tol3d.assembly.grammar.parts import SolidSpec, likes
@@ -285,7 +285,7 @@ class Drawing:
         normal = own.frame[:3, 2]
         if not spec.named_datums:
             return normal
-        if isinstance(own, SphereSpec) or (isinstance(own, PointSpec) and own.normal is None):
+        if not own.has_direction:
             return None
         features = self.features[part_of(feature)]
         datums = [[features[name] for name in datum.features if name in features] for datum in spec.named_datums]

@@ -9,7 +9,6 @@ import numpy as np
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features import PointSpec, SphereSpec
 from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.forms import units, whole_form
@@ -274,7 +273,7 @@ def _unclear(spec: PlusMinusSpec, drawing: Drawing, feature: str) -> str:
     names = ", ".join("-".join(datum.features) for datum in spec.named_datums)
     expected = "expected `along`, the direction in which the dimension is positive, got none"
     own = drawing.kind(feature)
-    if isinstance(own, SphereSpec) or (isinstance(own, PointSpec) and own.normal is None):
+    if not own.has_direction:
         return f"{expected}, and {feature!r} has no normal to say it"
     return f"{expected}, and {feature!r} lies off none of its datums ({names}) along its normal"
 

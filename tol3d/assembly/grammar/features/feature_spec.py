@@ -79,6 +79,11 @@ class FeatureSpec(Strict):
         """Nominally, in its part's frame (4, 4)."""
 
     @property
+    def has_direction(self) -> bool:
+        """True if z of its frame is a direction of its own: a normal or an axis."""
+        return True
+
+    @property
     def faces_picked(self) -> Mapping[str, FaceSpec]:
         """The faces from which it is picked, by their fields; none for a feature stated by numbers."""
         return {}

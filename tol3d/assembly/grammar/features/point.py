@@ -36,6 +36,10 @@ class PointSpec(OneFaceSpec):
         """See FeatureSpec; z along the normal, or the part's z."""
         return frame(self.origin, self.normal or (0.0, 0.0, 1.0))
 
+    @property
+    def has_direction(self) -> bool:
+        return self.normal is not None
+
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
         """See FeatureSpec; the point of the face that is nearest to where the scene has it, and the normal there."""
         (face,) = faces
@@ -67,6 +71,10 @@ class SphereSpec(OneFaceSpec):
     def frame(self) -> NDArray[np.float64]:
         """See FeatureSpec; z is that of the part."""
         return frame(self.origin, (0.0, 0.0, 1.0))
+
+    @property
+    def has_direction(self) -> bool:
+        return False
 
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
         (face,) = faces
