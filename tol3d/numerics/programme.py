@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.compiled import kernel, part
-from tol3d.numerics.loops import fill_matrix
+from tol3d.numerics.loops import fill, fill_matrix
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -140,26 +140,32 @@ def exchanged(
         if row < 0:
             return OK, -1, 0.0
         side = 1.0 if beyond > 0.0 else -1.0
+        fill(shares, 0.0)
+        for i in range(count):
+            own = rows[row, i]
+            if own != 0.0:  # most bodies have no part in a contact
+                for j in range(count):
+                    shares[j] += own * inverse[i, j]
         together = 1.0
         for j in range(count):
-            shares[j] = 0.0
-            for i in range(count):
-                shares[j] += rows[row, i] * inverse[i, j]
             together += abs(shares[j])
         place = leaving(basis, sides, loads, shares, side, by_number)
         if place < 0:
             return NO_ROOM, row, abs(beyond) / together
         step = 1.0 / shares[place]
         first, second = side * sides[place] * loads[0, place] * step, side * sides[place] * loads[1, place] * step
-        for i in range(count):
-            inverse[i, place] *= step
         for j in range(count):
             if j != place:
                 rate = side * sides[j] * shares[j]
                 loads[0, j] -= rate * first
                 loads[1, j] -= rate * second
-                for i in range(count):
-                    inverse[i, j] -= shares[j] * inverse[i, place]
+        shares[place] = 0.0
+        for i in range(count):
+            scaled = inverse[i, place] * step
+            if scaled != 0.0:
+                for j in range(count):
+                    inverse[i, j] -= shares[j] * scaled
+            inverse[i, place] = scaled
         loads[0, place], loads[1, place] = first, second
         basis[place] = row
         sides[place] = side

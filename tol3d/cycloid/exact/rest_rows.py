@@ -4,7 +4,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.cycloid.exact.pin_contact import TURN, lobe_at, lobe_turn, placed
+from tol3d.cycloid.exact.pin_contact import FOOT_XTOL, TURN, lobe_at, lobe_turn, placed, turned_by
 from tol3d.numerics.compiled import nested
 from tol3d.numerics.loops import fill
 
@@ -12,7 +12,6 @@ ARM: Final = 100.0  # mm; turns count as lengths there, so that all rows are of 
 ROOM: Final = 1.0  # mm, on either side of where it would be nominally
 TURNS: Final = 10.0  # times that, for turns of cranks: teeth may leave them more
 FOOT_STEPS: Final = 30
-FOOT_XTOL: Final = 1e-12  # rad
 
 
 @nested
@@ -28,13 +27,11 @@ def pin_gap(shape: Any, pose: Any, clock: float, flanks: Any, pin: Any, u: float
     ratio = shape.eccentricity * shape.pins / shape.ground_circle
     away_x, away_y = pin[0] - centre_x, pin[1] - centre_y
     gap, n_x, n_y = np.nan, 1.0, 0.0
+    c, s, e, f = np.cos(u), np.sin(u), np.cos(shape.pins * u), np.sin(shape.pins * u)
+    cos_psi, sin_psi = turned_by(cos_psi, sin_psi, clock)
     for _ in range(FOOT_STEPS):
-        c, s = np.cos(u), np.sin(u)
-        e, f = np.cos(shape.pins * u), np.sin(shape.pins * u)
         lobe = lobe_at(u, shape.lobes)
-        own = clock + lobe_turn(shape, lobe_pitch, lobe, f * c - e * s)
-        cos_own, sin_own = np.cos(own), np.sin(own)
-        cos_all, sin_all = cos_psi * cos_own - sin_psi * sin_own, sin_psi * cos_own + cos_psi * sin_own
+        cos_all, sin_all = turned_by(cos_psi, sin_psi, lobe_turn(shape, lobe_pitch, lobe, f * c - e * s))
         x, y = cos_all * away_x + sin_all * away_y, cos_all * away_y - sin_all * away_x
         speed = np.sqrt((c - ratio * e) ** 2 + (s - ratio * f) ** 2)
         n_x, n_y = (c - ratio * e) / speed, (s - ratio * f) / speed
@@ -51,6 +48,8 @@ def pin_gap(shape: Any, pose: Any, clock: float, flanks: Any, pin: Any, u: float
         u += step
         if abs(step) < FOOT_XTOL:
             break
+        c, s = turned_by(c, s, step)
+        e, f = turned_by(e, f, shape.pins * step)
     return gap, -n_x, -n_y, n_x * away_y - n_y * away_x
 
 
