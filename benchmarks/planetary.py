@@ -1,10 +1,15 @@
-"""Planetary reducers per second: free turns of placed gears, of first-order gaps, and whole studies.
+"""Reducers per second: free turns of placed gears, of first-order gaps, whole studies, and scenes by each method.
 
     python benchmarks/planetary.py [--trials 200000] [--rounds 3] [--workers 2]
+    python benchmarks/planetary.py --methods 200 [--rounds 3]
 
 By the clock and by the processor's own time, least of several rounds. A train of `reducer_3k` has 24 flanks; both ends
 of the output's turn are two linear programmes over six turns. The study draws 45 deviations, goes both methods of both
 lost motions, and takes its statistics; errors over a turn are counted by themselves, in positions a second.
+
+`--methods` prints another table and nothing else: all measures of scenes with reducers, so many trials of each, by the
+analytic and by the exact method, each apart, by one thread. Trials a second are those of the processor's own time; each
+round has trials of its own, for a machine knows builds again. Compare them with those of another tree, run in turn.
 """
 
 import argparse
@@ -27,6 +32,7 @@ from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 
 POSITIONS = 360
+REDUCERS = ("rv_250aii", "reducer_3k", "robot_arm")
 SCENE = Path(__file__).resolve().parent.parent / "scenes" / "reducer_3k.yaml"
 
 
@@ -42,6 +48,28 @@ def least(rounds: int, what: Callable[[], object]) -> tuple[float, float]:
     return min(clock for clock, _ in found), min(used for _, used in found)
 
 
+def methods_table(trials: int, rounds: int) -> Table:
+    """Trials a second of scenes by each method, without draws and statistics; the quickest of some rounds."""
+    table = Table(title=f"all measures of {trials} trials, one thread: trials a second of the processor")
+    for heading in ("scene", "analytic", "exact"):
+        table.add_column(heading, justify="left" if heading == "scene" else "right", no_wrap=True)
+    for name in REDUCERS:
+        simulation = simulation_of(load_scene(SCENE.with_name(f"{name}.yaml")), Overrides(trials=trials))
+        system, rates = simulation.system, []
+        for kind in ("analytic", "exact"):
+            method = system.method(kind, system.materials(kind))
+            method.answers(drawn(simulation, 0, 1), system.measures)  # compiles
+            spent = []
+            for part in range(1, rounds + 1):
+                own = drawn(simulation, part * trials, trials)
+                began = time.process_time()
+                method.answers(own, system.measures)
+                spent.append(time.process_time() - began)
+            rates.append(f"{trials / min(spent):,.0f}")
+        table.add_row(name, *rates)
+    return table
+
+
 def lost_motions_alone(scene: str) -> str:
     """A scene without its transmission errors and published columns."""
     first, last = scene.index("  transmission error:"), scene.index("\nstudy:")
@@ -54,7 +82,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--trials", type=int, default=200_000)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--methods", type=int, help="trials of scenes by each method, and nothing else")
     given = parser.parse_args(arguments)
+    if given.methods:
+        Console().print(methods_table(given.methods, given.rounds))
+        return
     scene = load_scene(SCENE)
     system = planetary_system(scene)
     trials = drawn(simulation_of(scene, Overrides(trials=given.trials)), 0, given.trials)

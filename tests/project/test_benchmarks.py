@@ -176,6 +176,16 @@ def test_a_benchmark_runs_and_prints_every_row(
 
 
 @pytest.mark.slow
+def test_reducers_are_timed_by_each_method(capsys: pytest.CaptureFixture[str]) -> None:
+    importlib.import_module("planetary").main(["--methods", "4", "--rounds", "1"])
+    printed = capsys.readouterr().out
+    for scene in ("rv_250aii", "reducer_3k", "robot_arm"):
+        found = re.search(rf"{scene} +│ +{NUMBER} │ +{NUMBER}", printed)
+        assert found, printed
+        assert all(float(number.replace(",", "")) > 0 for number in found.groups())
+
+
+@pytest.mark.slow
 def test_whole_gears_find_the_backlash_of_thinned_teeth() -> None:
     """(Δs1 + Δs2) cos α of the means (24.5 and 26.5 µm thinner) at the nominal centre distance.
 
