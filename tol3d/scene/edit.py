@@ -1,31 +1,23 @@
 """A scene's file with other tolerances in it: the rest stays as it was written, comments too."""
 
 from collections.abc import Mapping
-from copy import copy
 from dataclasses import replace
-from io import StringIO
 from pathlib import Path
-from typing import Any, Final
-
-from ruamel.yaml import YAML
-from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from typing import Any
 
 from tol3d.errors import InputError, unwritable
 from tol3d.scene.including import INCLUDE
 from tol3d.scene.load import read_scene
 from tol3d.scene.schema import Scene
+from tol3d.scene.splice import INDENT, flow_text, spliced, written_values
 from tol3d.scene.tolerance import ToleranceEntry
-
-UNBROKEN: Final = 10_000  # characters; no entry is broken into lines where its author did not
-INDENT: Final = 2
 
 Tolerances = Mapping[str, ToleranceEntry]
 
 
 def tolerance_lines(tolerances: Tolerances) -> str:
     """Tolerances as lines to paste into the section `tolerances` of a scene."""
-    entries = CommentedMap((name, flow(_plain(spec))) for name, spec in tolerances.items())
-    return "".join(f"{' ' * INDENT}{line}\n" for line in written(entries).splitlines())
+    return "".join(f"{' ' * INDENT}{flow_text(name)}: {flow_text(_plain(spec))}\n" for name, spec in tolerances.items())
 
 
 def with_tolerances(scene: Scene, changed: Tolerances) -> Scene:
@@ -46,7 +38,7 @@ def write_scene(scene: Scene, path: Path) -> None:
             f"{path}: expected a file in {scene.folder}, for the scene names files by their way from there"
         )
     try:
-        with path.open("x", encoding="utf-8") as file:
+        with path.open("x", encoding="utf-8", newline="") as file:
             file.write(scene.text)
     except FileExistsError:
         raise InputError(f"{path}: expected the name of a new file, there is one already") from None
@@ -62,35 +54,28 @@ def _edited(scene: Scene, changed: Tolerances) -> str:
 
     One of an included file is left out there, and written into the scene.
     """
-    data = loaded_yaml(scene.text)
-    if "tolerances" not in data:
-        data.insert(list(data).index("moves") if "moves" in data else len(data), "tolerances", CommentedMap())
-    tolerances = data["tolerances"]
+    text = scene.text
     for name, spec in changed.items():
-        plain = _plain(spec)
-        if name not in tolerances:
+        own, plain = written_values(text), _plain(spec)
+        if name not in (own.get("tolerances") or {}):
             if name in scene.tolerances:
-                leave_out(data[INCLUDE], name)
-            tolerances[name] = flow(plain)
+                text = without(text, own[INCLUDE], name)
+            text = spliced(text, ("tolerances", name), plain)
             continue
-        entry = copy(tolerances[name])  # another entry may be an alias of it
         before = _plain(scene.tolerances[name])
         for key, value in plain.items():
             if before.get(key) != value:
-                entry[key] = flow(value)
-        tolerances[name] = entry
-    return written(data)
+                text = spliced(text, ("tolerances", name, key), value)
+    return text
 
 
-def leave_out(includes: CommentedMap, name: str) -> None:
-    """Name an entry of an included file among those that are left out."""
+def without(text: str, includes: Mapping[str, Any], name: str) -> str:
+    """A scene's text in which an entry of an included file is left out."""
     prefix = max((own for own in includes if name.startswith(f"{own} ")), key=len)
     given = includes[prefix]
-    spelt = CommentedMap(file=given) if isinstance(given, str) else copy(given)
-    spelt["without"] = CommentedSeq([*spelt.get("without", ()), name.removeprefix(f"{prefix} ")])
-    spelt["without"].fa.set_flow_style()
-    spelt.fa.set_flow_style()
-    includes[prefix] = spelt
+    spelt = {"file": given} if isinstance(given, str) else given
+    left_out = [*spelt.get("without", ()), name.removeprefix(f"{prefix} ")]
+    return spliced(text, (INCLUDE, prefix), {**spelt, "without": left_out})
 
 
 def _plain(spec: ToleranceEntry) -> dict[str, Any]:
@@ -98,34 +83,3 @@ def _plain(spec: ToleranceEntry) -> dict[str, Any]:
     plain: dict[str, Any] = spec.model_dump(mode="json", exclude_unset=True)
     last = {key: plain.pop(key) for key in ("distribution",) if key in plain}
     return {**plain, **last}
-
-
-def flow(values: Any) -> Any:
-    """Values as YAML writes them on one line: {key: value}."""
-    if isinstance(values, list):
-        items = CommentedSeq(flow(value) for value in values)
-        items.fa.set_flow_style()
-        return items
-    if not isinstance(values, dict):
-        return values
-    entries = CommentedMap((key, flow(value)) for key, value in values.items())
-    entries.fa.set_flow_style()
-    return entries
-
-
-def loaded_yaml(text: str) -> Any:
-    """A scene's text with all that is needed to write it again as it was."""
-    return _yaml().load(text)
-
-
-def _yaml() -> YAML:
-    yaml = YAML()
-    yaml.width, yaml.preserve_quotes = UNBROKEN, True
-    return yaml
-
-
-def written(data: Any) -> str:
-    """The text that `loaded_yaml` read."""
-    stream = StringIO()
-    _yaml().dump(data, stream)
-    return stream.getvalue()

@@ -7,15 +7,11 @@ the scene.
 
 import re
 from collections.abc import Mapping, Sequence
-from copy import copy
-from itertools import pairwise
 from typing import Any, Final
-
-from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from tol3d.distributions.drawn import DEFAULT_LAW
 from tol3d.errors import InputError
-from tol3d.scene.edit import flow, leave_out, loaded_yaml, written
+from tol3d.scene.edit import without
 from tol3d.scene.include import Includes
 from tol3d.scene.including import INCLUDE
 from tol3d.scene.load import scene_of_text
@@ -23,6 +19,7 @@ from tol3d.scene.nearest import hint
 from tol3d.scene.node import plain
 from tol3d.scene.place import KeyPath, path_text
 from tol3d.scene.schema import SECTIONS, Scene
+from tol3d.scene.splice import INDENT, flow_text, spliced, written_values
 from tol3d.scene.text import scene_text
 from tol3d.units import BARE_NUMBER, NUMBER_UNIT, Quantity
 
@@ -34,15 +31,12 @@ def varied(scene: Scene, changes: Mapping[str, Any], *, trust_parts: bool = Fals
     """The scene with other values; see `Scene.with_`."""
     text = scene.text or dumped(scene)
     before = _values(scene, text)
-    data = loaded_yaml(text)
     paths = {field: field_path(before, field) for field in changes}
     for field, path in paths.items():
-        _take_over(data, before, path)
-        _put(data, path, _plain(changes[field]), field)
-    new = written(data)
+        text = spliced(_taken_over(text, before, path), path, _plain(changes[field]))
     return scene_of_text(
         scene.source,
-        new.encode(),
+        text.encode(),
         scene.grammar,
         trust_parts=trust_parts,
         run_builders=run_builders,
@@ -70,11 +64,13 @@ def dumped(scene: Scene) -> str:
     if scene.text:
         return scene.text
     data = scene.model_dump(mode="json", exclude_unset=True, by_alias=True)
-    top = CommentedMap()
+    lines = []
     for key, value in data.items():
-        section = isinstance(value, dict) and key in (*SECTIONS, "published")
-        top[key] = CommentedMap((name, flow(own)) for name, own in value.items()) if section else flow(value)
-    return written(top)
+        is_section = isinstance(value, dict) and value and key in (*SECTIONS, "published")
+        lines.append(f"{key}:" if is_section else f"{key}: {flow_text(value)}")
+        entries = value.items() if is_section else ()
+        lines += [f"{' ' * INDENT}{flow_text(name)}: {flow_text(own)}" for name, own in entries]
+    return "\n".join([*lines, ""])
 
 
 def field_path(data: Mapping[str, Any], field: str) -> KeyPath:
@@ -148,46 +144,16 @@ def _refuse_unknown(data: Mapping[str, Any], here: Any, path: KeyPath, key: str 
 # the text -----------------------------------------------------------------------------------------
 
 
-def _take_over(data: CommentedMap, before: Mapping[str, Any], path: KeyPath) -> None:
-    """Write an entry of an included file into the scene, if the path leads into one."""
-    if len(path) < 2 or path[0] not in SECTIONS:
-        return
+def _taken_over(text: str, before: Mapping[str, Any], path: KeyPath) -> str:
+    """The text with an entry of an included file written into the scene, if the path leads into one."""
+    own = written_values(text)
+    if len(path) < 2 or path[0] not in SECTIONS or path[1] in (own.get(path[0]) or {}) or INCLUDE not in own:
+        return text
     section, name = path[0], path[1]
-    if name in (data.get(section) or {}) or INCLUDE not in data:
-        return
     if section == "moves":
         words = "expected a move of the scene itself, for the order of moves is that of their files"
         raise InputError(f"{path_text(path)}: {words}; change it in the included file")
-    leave_out(data[INCLUDE], str(name))
-    if section not in data:
-        data.insert(list(data).index("moves") if "moves" in data else len(data), section, CommentedMap())
-    data[section][name] = flow(before[section][name])
-
-
-def _put(data: CommentedMap, path: KeyPath, value: Any, field: str) -> None:
-    """Set a value; mappings on its way are copies, for others may be aliases of them."""
-    here: Any = data
-    for key, following in pairwise(path):
-        inside = here[key] if _has(here, key) else None
-        if not isinstance(inside, dict | list):
-            if inside is not None or isinstance(following, int):
-                raise InputError(f"{field}: expected a field of a scene, but {key!r} holds none")
-            inside = CommentedMap()
-            inside.fa.set_flow_style()
-        here[key] = copy(inside)
-        here = here[key]
-        _forget_anchor(here)
-    here[path[-1]] = flow(value)
-
-
-def _has(here: Any, key: Any) -> bool:
-    return key in here if isinstance(here, dict) else isinstance(key, int) and key < len(here)
-
-
-def _forget_anchor(own: Any) -> None:
-    """A copy is none that others are aliases of."""
-    if isinstance(own, CommentedMap | CommentedSeq) and own.anchor.value is not None:
-        own.yaml_set_anchor(None)
+    return spliced(without(text, own[INCLUDE], str(name)), (section, name), before[section][name])
 
 
 def _plain(value: Any) -> Any:
