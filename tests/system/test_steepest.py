@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tol3d.distributions.uniform import Uniform
+from tol3d.system.draw import Each
 from tol3d.system.steepest import along, steepest_ends
 
 Array = NDArray[np.float64]
@@ -48,3 +50,28 @@ def test_a_vector_that_is_off_already_is_looked_at_across_too() -> None:
 def test_what_fails_beside_the_mean_has_no_ends() -> None:
     ends = steepest_ends(lambda rows: np.where(rows[:, 0] > 0, np.nan, 1.0), np.zeros(2), np.ones(2), FURTHEST)
     assert np.isnan(ends).all()
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-12, -1e-12])
+def test_rounding_decides_no_direction(noise: float) -> None:
+    """Two features alike, the size of whose sum is read: the first is looked at, whichever comes out larger."""
+    rounding = noise * np.array([1.0, -2.0, 3.0, -1.0])
+
+    def size(rows: Array) -> Array:
+        return np.hypot(rows[:, 0] + rows[:, 2], rows[:, 1] + rows[:, 3]) + rows @ rounding
+
+    ends = steepest_ends(size, np.zeros(4), np.full(4, RADIUS), FURTHEST)
+    np.testing.assert_allclose(ends[0], RADIUS * np.array([0.5, 0.0, 0.5, 0.0]) ** 0.5, atol=1e-9)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-12, -1e-12])
+def test_of_several_features_that_act_alike_to_both_sides_each_is_looked_at(noise: float) -> None:
+    """What they add to a measure by their sizes is found, not the direction of rounding; a sum has one pair as ever."""
+    draw = Each(Uniform(-2.0, 2.0), ("a", "b", "c"))
+    factors, rounding = np.array([1.0, 3.0, 0.5]), noise * np.array([1.0, -1.0, 2.0])
+    ends = draw.ends(lambda rows: np.abs(rows) @ factors + rows @ rounding, turning=False)
+    grown = np.abs(ends) @ factors
+    assert sorted(grown.tolist()) == pytest.approx([1.0, 1.0, 2.0, 2.0, 6.0, 6.0])
+    np.testing.assert_allclose(ends.sum(axis=0), 0.0, atol=1e-14)
+    together = draw.ends(lambda rows: rows @ factors + rows @ rounding, turning=False)
+    np.testing.assert_allclose(together[0], 2.0 * factors / np.linalg.norm(factors), atol=1e-9)

@@ -12,8 +12,8 @@ from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group, scalars
 from tol3d.system.remembered import Remembered
+from tol3d.system.steepest import TIE, along, steepest_ends
 from tol3d.system.steepest import Values as Values  # also of mechanisms from outside
-from tol3d.system.steepest import along, steepest_ends
 
 
 class Draw(Protocol):
@@ -264,14 +264,18 @@ class Each:
         """See Draw: as far along the steepest direction as the law reaches, by all features together.
 
         All of them at their worst ends at once would be far rarer than the end of one deviation: sqrt(features) times
-        as many sigma of their joint effect.
+        as many sigma of their joint effect. Of a measure that changes alike to both sides each one's pair of ends
+        follows: its slopes are rounding.
         """
         law, count = self.distribution, len(self.names)
-        alone = np.full((2 * count, count), law.mean)
+        alone = np.full((2 * count + 1, count), law.mean)
         alone[np.arange(count), np.arange(count)] = law.high
         alone[count + np.arange(count), np.arange(count)] = law.low
-        found = values(alone)
-        slope = found[:count] - found[count:]
+        *found, middle = values(alone)
+        above, below = np.array(found).reshape(2, count)
+        slope = above - below
+        if np.abs((above + below) / 2.0 - middle).sum() > (1.0 + TIE) * np.abs(slope).sum() / 2.0:
+            return alone[:-1].reshape(2, count, count).transpose(1, 0, 2).reshape(2 * count, count)
         size = float(np.sqrt((slope * slope).sum()))
         along = slope / size if size > 0.0 else np.zeros(count)
         reach = np.stack([np.where(along > 0.0, law.high, law.low), np.where(along > 0.0, law.low, law.high)])

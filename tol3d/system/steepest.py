@@ -11,6 +11,8 @@ Values = Callable[[Array], Array]
 """A measure (rows,) of the components (rows, components) of one contributor, all others at their means."""
 LEAST_STEP: Final = 1e-9
 """Step of a slope [mm or rad] where a deviation has no width."""
+TIE: Final = 1e-6
+"""Part by which one change must be larger than another: features alike, and effects to one side, differ by rounding."""
 CURVED: Final = 0.1
 """Change that is alike to both sides over the one that is not, from which on other directions are looked at too."""
 
@@ -36,9 +38,11 @@ def steepest_ends(values: Values, mean: Array, steps: Array, furthest: Callable[
     if not np.isfinite(slopes).all():
         return np.full((2, len(steps)), np.nan)
     odd, even = np.abs(above - below).sum() / 2.0, np.abs(alike).sum()
-    if even > odd:
-        most = int(np.argmax(np.abs(alike)))
-        place = mean + (both[most] if slopes[most] * alike[most] >= 0.0 else -both[most])
+    if even > (1.0 + TIE) * odd:
+        most = int(np.argmax(np.abs(alike) >= (1.0 - TIE) * np.abs(alike).max()))
+        place = mean + (
+            both[most] if slopes[most] * steps[most] * alike[most] >= -TIE * alike[most] ** 2 else -both[most]
+        )
         above, below = values(place + both).reshape(2, len(steps))
         there = np.sign(alike[most]) * (above - below) / (2.0 * steps)
         slopes = there if np.isfinite(there).all() else slopes
