@@ -52,7 +52,8 @@ def mutable(value: Any, path: str) -> Iterator[str]:
     if isinstance(value, list | dict | set):
         yield f"{path}: {type(value).__name__}"
     elif is_dataclass(value) and not isinstance(value, type):
-        if not type(value).__dataclass_params__.frozen:  # type: ignore[attr-defined]
+        kind: Any = type(value)
+        if not kind.__dataclass_params__.frozen:
             yield f"{path}: {type(value).__name__}"
         for own in fields(value):
             yield from mutable(getattr(value, own.name), f"{path}.{own.name}")
