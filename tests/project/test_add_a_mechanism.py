@@ -18,7 +18,7 @@ import scipy.stats
 from places import ROOT
 
 import tol3d
-from tol3d import kinds
+from tol3d import import_path, kinds
 from tol3d.errors import InputError
 from tol3d.report import picture
 from tol3d.runs.run import Run
@@ -249,4 +249,4 @@ def test_a_run_without_a_presenter_has_no_further_pictures_and_no_builds_to_show
 
 def test_its_entry_point_is_in_the_group_that_is_asked_for() -> None:
     (points,) = tomllib.loads(fence("toml", "pin_gauge:PIN_GAUGES"))["project"]["entry-points"].items()
-    assert points == (kinds.GROUP, {"pin_gauges": "pin_gauge:PIN_GAUGES"})
+    assert points == (import_path.GROUP, {"pin_gauges": "pin_gauge:PIN_GAUGES"})

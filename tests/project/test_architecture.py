@@ -33,7 +33,7 @@ DOORS = {
     ),
     "PIL": ("tol3d/report/animation.py", "tol3d/report/html/view_3d.py"),
     "ruamel": ("tol3d/scene/",),
-    "yaml": ("tol3d/scene/text.py",),
+    "yaml": ("tol3d/scene/text.py", "tol3d/scene/splice.py"),
     "joblib": ("tol3d/execution/pools.py",),
     "dask": ("tol3d/execution/pools.py",),
     "distributed": ("tol3d/execution/pools.py",),

@@ -14,7 +14,7 @@ from places import ROOT
 from typer.core import TyperGroup
 
 from tol3d.cli import app
-from tol3d.kinds import GROUP
+from tol3d.import_path import GROUP
 from tol3d.scene.bundled import bundled_scenes
 
 PAGES: Mapping[str, Path] = {

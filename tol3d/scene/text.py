@@ -1,4 +1,4 @@
-"""Plain values of a file with their places: the only module that reads YAML.
+"""Plain values of a file with their places: the only module that reads YAML; splice.py asks where values stand.
 
 Grammar: YAML 1.2 by the events of libyaml, in PyYAML, which are turned into values here in one pass, so
 that no input costs more than the limits below, and every key keeps its line. Plain scalars follow the
