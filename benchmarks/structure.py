@@ -68,7 +68,7 @@ class Lengths:
 
 @dataclass(frozen=True)
 class Reading:
-    """What a reader of a tree meets.
+    """Lengths and names that a reader of a tree meets.
 
     Args:
         lines: of all files, and of one in the middle.
@@ -203,7 +203,7 @@ def lengths(package: Path) -> Lengths:
 
 
 def reading(package: Path) -> Reading:
-    """What a reader of a package meets."""
+    """Count what a reader of a package meets."""
     sizes, imports, found, private, own = list[int](), 0, list[int](), 0, 0
     once = list[int]()
     for path in sorted(package.rglob("*.py")):

@@ -288,7 +288,7 @@ def test_pieces_grow_to_a_tenth_of_a_second(
 
 
 def test_an_analysis_stops_within_an_evaluation_and_tells_how_far_it_is() -> None:
-    """What the callback raises comes out, and the bits are those of all at once."""
+    """An error of the callback comes out; the bits are those of all builds at once."""
     told = list[str]()
     what_if("spur_pair", factor={"centre distance": 0.5}, trials=400, draws=0, activity=told.append)
     assert "400 trials before, 400 of 400 builds" in told

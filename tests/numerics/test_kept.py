@@ -1,4 +1,4 @@
-"""What is kept by frozen objects and by rows."""
+"""Results kept by frozen objects and by rows."""
 
 import pickle
 from dataclasses import dataclass, replace

@@ -66,7 +66,7 @@ def test_rounding_decides_no_direction(noise: float) -> None:
 
 @pytest.mark.parametrize("noise", [0.0, 1e-12, -1e-12])
 def test_of_several_features_that_act_alike_to_both_sides_each_is_looked_at(noise: float) -> None:
-    """What they add to a measure by their sizes is found, not the direction of rounding; a sum has one pair as ever."""
+    """Their effects by size are found, not the direction of rounding; a sum has one pair as ever."""
     draw = Each(Uniform(-2.0, 2.0), ("a", "b", "c"))
     factors, rounding = np.array([1.0, 3.0, 0.5]), noise * np.array([1.0, -1.0, 2.0])
     ends = draw.ends(lambda rows: np.abs(rows) @ factors + rows @ rounding, turning=False)

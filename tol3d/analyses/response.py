@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.kept_batches import KeptBatches
+from tol3d.analyses.pace import Pace
 from tol3d.analyses.scope import Scope, scope_of
 from tol3d.distributions import Distribution
 from tol3d.distributions.base import Stays
@@ -59,17 +60,6 @@ NUDGE: Final[Mapping[str, float]] = {"um": 1e-3, "arcmin": 1e-5, "K": 0.1, "1": 
 
 SHOWN: Final = 5
 """Measures that a response names where it shows itself."""
-FIRST_PIECE: Final = 64
-"""Builds of the first piece."""
-PIECE: Final = 0.1
-"""Seconds to which pieces grow."""
-MOST_GROWTH: Final = 16.0
-FIXED_IN: Final = 10.0
-"""Seconds of a piece over those of it that do not grow with builds, up to `LONGEST`."""
-QUICK: Final = 0.02
-"""Seconds of pieces of fewer builds than asked for that tell nothing."""
-LONGEST: Final = 0.5
-"""Seconds to which that lengthens pieces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,36 +109,6 @@ class _Known(dict[str, T]):
 
     def __missing__(self, name: str) -> NoReturn:
         raise InputError(f"expected {self.what}, got {name!r}{hint(str(name), self)}")
-
-
-@dataclass
-class Pace:
-    """Number of builds of the next piece: a piece of n builds takes fixed + each · n seconds, by the last two sizes.
-
-    Args:
-        count: of the next piece.
-        measured: the least seconds of the last two sizes.
-    """
-
-    count: int = FIRST_PIECE
-    measured: Mapping[int, float] = field(default_factory=dict)
-
-    def took(self, builds: int, seconds: float) -> None:
-        """Take the time of a piece; the second one is larger or smaller, so as to learn what does not grow with it."""
-        if builds < self.count and seconds < QUICK:
-            return
-        seconds = max(min(seconds, self.measured.get(builds, seconds)), 1e-6)
-        others = [(count, its) for count, its in self.measured.items() if count != builds][-1:]
-        self.measured = dict([*others, (builds, seconds)])
-        if not others:
-            longer = min(PIECE / seconds, MOST_GROWTH) if seconds < PIECE else 2.0 if seconds < 2.5 * PIECE else 0.5
-            self.count = max(int(builds * longer), 1)
-            return
-        ((count, its),) = others
-        each = max((seconds - its) / (builds - count), 1e-9)
-        fixed = max(seconds - each * builds, 0.0)
-        wanted = max(PIECE, min(FIXED_IN * fixed, LONGEST), 2.0 * fixed)
-        self.count = max(round(min((wanted - fixed) / each, MOST_GROWTH * builds)), 1)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -40,7 +40,7 @@ class AtRest:
 
     @cached_property
     def poses(self) -> Mapping[str, Array]:
-        """Where moves place parts, in the world (4, 4); parts that cannot be placed are left out."""
+        """Poses of parts as moves place them, in the world (4, 4); parts that cannot be placed are left out."""
         found = placing.placed(self.assembly, self._rest)
         return {name: np.asarray(pose[0]) for name, pose in found.items() if np.isfinite(pose[0]).all()}
 

@@ -301,7 +301,7 @@ class TrainSwing:
 
     @property
     def turned(self) -> NDArray[np.bool_]:
-        """Where the load acts on the other side than at the start, (positions,)."""
+        """True at positions where the load acts on the other side than at the start, (positions,)."""
         return np.array(self.kind.turned)
 
     @property

@@ -1,4 +1,4 @@
-"""What is computed once: results of methods of frozen objects, and those of rows of numbers."""
+"""Results that are computed once: of methods of frozen objects, and of rows of numbers."""
 
 from collections.abc import Callable, Hashable, Sequence
 from functools import update_wrapper

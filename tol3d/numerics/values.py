@@ -19,7 +19,7 @@ class Valued:
 
     @cached_property
     def digest(self) -> bytes:
-        """Of its class and its fields, in 16 bytes."""
+        """Digest of its class and its fields, in 16 bytes."""
         return blake2b(b"".join((*_fields(self), self.beside)), digest_size=16).digest()
 
     @property

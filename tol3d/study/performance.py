@@ -162,7 +162,7 @@ class Judged:
 
     @property
     def _signs(self) -> list[float]:
-        """Of each limit that there is: +1 of the lower one, -1 of the upper one."""
+        """Signs of the limits that there are: +1 of the lower one, -1 of the upper one."""
         return [sign for limit, sign in ((self.lower, 1.0), (self.upper, -1.0)) if limit is not None]
 
     @property

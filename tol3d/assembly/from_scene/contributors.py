@@ -46,7 +46,7 @@ class _Tolerances:
         return self.drawing.scene
 
     def drawn(self) -> Iterator[Drawn]:
-        """What they draw, in the scene's order; the motion of a pattern after its last feature."""
+        """Their draws, in the scene's order; the motion of a pattern after its last feature."""
         for own in self.drawing.stated:
             if isinstance(own, str):
                 yield self._locator(own)

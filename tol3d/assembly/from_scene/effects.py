@@ -15,7 +15,7 @@ Touch = tuple[str, str]
 
 @dataclass(frozen=True, eq=False)
 class Effect:
-    """What a contributor changes.
+    """Effect of a contributor.
 
     Args:
         acts: the field of Effects.

@@ -290,7 +290,7 @@ def _common(middle: float, halves: tuple[float, float]) -> tuple[float, float]:
 
 
 def _within(linear: float, square: float, constant: float) -> tuple[float, float]:
-    """Where square t^2 + 2 linear t + constant <= 0, t without a limit where it is so for all, (inf, -inf) for none."""
+    """Interval of t in which square t^2 + 2 linear t + constant <= 0: without ends for all t, (inf, -inf) for none."""
     spread = linear * linear - square * constant
     if square < NO_DISTANCE**2:
         return (-np.inf, np.inf) if constant <= 0.0 else (np.inf, -np.inf)

@@ -140,7 +140,8 @@ def touched(
 ) -> tuple[float, float, bool]:  # fmt: skip
     """The carrier's turn [rad] at which one pin touches one section of a disc, beyond -phi / Zc.
 
-    A step that is settled is more than what is left to go: a turn that is enough is only shown to be, not found.
+    A step that is settled, the foot near, is more than what is left to go: a turn beyond what is enough is only shown
+    to be so, not found.
 
     Args:
         shape: ContactShape.
@@ -189,7 +190,7 @@ def touched(
         u += foot
         if abs(step) < TURN_XTOL and abs(foot) < FOOT_XTOL:
             return turn, leans, True
-        if abs(step) < SETTLED * before and sense * turn - abs(step) > enough:
+        if abs(step) < SETTLED * before and abs(foot) < longest and sense * turn - abs(step) > enough:
             return turn, leans, True
         before = abs(step)
         c, s = turned_by(c, s, foot)

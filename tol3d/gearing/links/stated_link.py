@@ -196,7 +196,7 @@ class StatedLink(ABC):
 
     @kept
     def known_parts(self, about: bytes) -> KnownRows[Array]:
-        """What is known of its `parts` about some means, by the deviations of a trial, (contributors,)."""
+        """Known `parts` about some means, by the deviations of a trial, (contributors,)."""
         return KnownRows(MOST_KEPT)
 
     @property
