@@ -31,7 +31,7 @@ WITNESS: Final = "tol3d.cycloid.reducer.witness"  # it loads FCL, in the worker
 METHODS: Final[Mapping[str, MethodKind]] = {
     "exact": MethodKind("kernels", compiled=True, contacts_per_minute=900_000_000),
     FCL: MethodKind("discs: solid and measuring strips", threads=False, witness=True, contacts_per_minute=800_000),
-    ANALYTIC_METHOD: MethodKind("model"),
+    ANALYTIC_METHOD: MethodKind("kernels", compiled=True),
 }
 
 

@@ -15,12 +15,10 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.cycloid.first_order.linear import LinearStage, NominalPins, PlacedDisc, Sense, picked
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.first_order.linear import LinearStage
 from tol3d.cycloid.reducer.trials import RVMethod, RVTrials
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning, led_angles
-from tol3d.numerics.arrays import Array, Places
-from tol3d.numerics.plane import as_complex
+from tol3d.numerics.arrays import Array
 from tol3d.reducers.trials import ReducerMeasure
 from tol3d.system.taken import taken
 from tol3d.system.trials import Trials
@@ -30,38 +28,7 @@ from tol3d.system.trials import Trials
 class BentStage(LinearStage):
     """A cycloid stage whose first-order turns have the bend of the path of each pin besides."""
 
-    def _allowed(
-        self,
-        deviated: Deviated,
-        disc: int,
-        placed: PlacedDisc,
-        phis: Array,
-        nominal: NominalPins,
-        sense: Sense,
-        aside: Array | None,
-    ) -> tuple[Array, Places]:
-        turns, pins = super()._allowed(deviated, disc, placed, phis, nominal, sense, aside)
-        works = np.isfinite(turns)
-        bends = self._bends(deviated, disc, placed, phis, pins, np.where(works, turns, 0.0))
-        return np.where(works, turns + bends, turns), pins
-
-    def _bends(
-        self, deviated: Deviated, disc: int, placed: PlacedDisc, phis: Array, pins: Places, turns: Array
-    ) -> Array:
-        """Contribution of the bend to the turns of one disc (trials, pins) [rad]."""
-        profile, azimuths = self.profile, self._azimuths[pins]
-        phases = phis + self.throws[disc]
-        towards = profile.eccentricity * np.exp(1j * phases)[:, None]
-        u = self._parameters(phases)[:, pins]
-        moved, turned = placed.at(phis, profile.lobes)
-        pitch = picked(deviated.lobe_pitch[:, disc], self._lobes(u)) * profile.shortening / profile.pitch_radius
-        arm = profile.pin_circle_radius * np.exp(1j * azimuths) - towards
-        apart = as_complex(deviated.pins[:, pins]) * np.exp(1j * azimuths) - moved[:, None]
-        apart = apart - 1j * (turns * self.rolling * towards + (turns + turned[:, None] + pitch) * arm)
-        along = (np.conj(1j * self._normals(u, azimuths)) * apart).real
-        along -= profile.modification.shift * profile.sin_normal(u)
-        lever = -profile.lever(u) * self._giving
-        return np.asarray(profile.path_curvature(u) / 2 * along**2 / np.where(lever == 0.0, 1.0, lever))
+    bends = True
 
 
 BEND: Final = "the bend of flanks, and which pin touches"

@@ -16,6 +16,7 @@ from tol3d.cycloid.exact.contact_kernel import first_contacts
 from tol3d.cycloid.exact.rest import RestStage
 from tol3d.cycloid.exact.rest_kernel import NOT_HELD, rests
 from tol3d.cycloid.first_order.linear_rest import Forces, LinearRest
+from tol3d.cycloid.first_order.turns_kernel import first_order_turns
 from tol3d.cycloid.model.stage import Deviated, Play
 from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.first_stage import (
@@ -201,7 +202,7 @@ SOLVERS: Final[Mapping[str, Solver]] = {
     "exact": Solver(
         exact_turning, lambda own: cone_programmes.kept and rests.kept if own.plays else first_contacts.kept
     ),
-    ANALYTIC_METHOD: Solver(linear_turning, lambda own: cone_programmes.kept if own.plays else True),
+    ANALYTIC_METHOD: Solver(linear_turning, lambda own: cone_programmes.kept if own.plays else first_order_turns.kept),
 }
 
 
