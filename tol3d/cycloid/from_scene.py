@@ -1,7 +1,7 @@
 """An RV reducer from a scene, with its deviations and measures, or the reason why it cannot be built."""
 
 import math
-from typing import Any
+from typing import Any, Final
 
 from tol3d.cycloid.grammar.measures import (
     CycloidMeasureSpec,
@@ -9,7 +9,7 @@ from tol3d.cycloid.grammar.measures import (
     CycloidTransmissionErrorSpec,
 )
 from tol3d.cycloid.grammar.moves import RVReducerSpec
-from tol3d.cycloid.grammar.parts import CycloidDiscSpec
+from tol3d.cycloid.grammar.parts import CrankCarrierSpec, CrankshaftSpec, CycloidDiscSpec, PinRingSpec
 from tol3d.cycloid.grammar.published import PublishedCycloidStages
 from tol3d.cycloid.grammar.tolerances import BearingPlaySpec
 from tol3d.cycloid.model.limits import circle_fault, faults, hole_faults, largest_window, lobes_fault
@@ -23,32 +23,14 @@ from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.gearing.model.from_scene import implausible_teeth
 from tol3d.gearing.model.pairs import cylindrical_gear
 from tol3d.gears import SpurGear, SpurPair
-from tol3d.reducers.from_scene import contributors_of, only_reducer, refuse_unused, unlike
+from tol3d.reducers.from_scene import ReducerKind, unlike
 from tol3d.reducers.trials import ReducerMeasure, reducer_measure
 from tol3d.scene import Scene
-from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
 from tol3d.scene.published import PublishedColumn
 
 
-def rv_set(scene: Scene) -> RVSet:
-    """The reducer of a scene that has nothing else.
-
-    Raises:
-        SceneError: not one reducer and nothing else, or one that cannot be put together.
-    """
-    name, spec = only_reducer(scene, RVReducerSpec)
-    refuse_unused(scene, (PartSpec,), parts_of(spec), repr(name))
-    return reducer_of(scene, name, spec)
-
-
-def parts_of(spec: RVReducerSpec) -> frozenset[str]:
-    """The parts of a reducer."""
-    own = (spec.pin_ring, spec.disc, spec.crankshaft, spec.carrier, spec.sun, spec.planet)
-    return frozenset(part for part in own if part is not None)
-
-
-def reducer_of(scene: Scene, name: str, spec: RVReducerSpec) -> RVSet:
+def _reducer_of(scene: Scene, name: str, spec: RVReducerSpec) -> RVSet:
     """The reducer that a move of a scene stands for, whatever else is in the scene.
 
     Raises:
@@ -163,7 +145,7 @@ def _first_stage(scene: Scene, name: str, spec: RVReducerSpec, distance: float) 
     return FirstStage(spec.sun, spec.planet, pair)
 
 
-def implausible_stage(scene: Scene, own: RVSet) -> tuple[str, ...]:
+def _implausible(scene: Scene, own: RVSet) -> tuple[str, ...]:
     """Warnings of the gears before the cycloid stage.
 
     Raises:
@@ -175,20 +157,32 @@ def implausible_stage(scene: Scene, own: RVSet) -> tuple[str, ...]:
     return tuple(implausible_teeth(scene, gears))
 
 
+REDUCERS: Final = ReducerKind(
+    "an RV reducer",
+    RVReducerSpec,
+    CycloidMeasureSpec,
+    (PinRingSpec, CycloidDiscSpec, CrankshaftSpec, CrankCarrierSpec),
+    _reducer_of,
+    _implausible,
+    acts_of,
+    draw_of,
+)
+
+
 def rv_system(scene: Scene) -> RVSystem:
     """System of an RV reducer, from its scene.
 
     Raises:
         SceneError: kinds that do not act on it, or a reducer that cannot be built, with its numbers.
     """
-    own = rv_set(scene)
-    contributors, acts = contributors_of(scene, own, acts_of, draw_of)
+    own = REDUCERS.alone(scene)
+    contributors, acts = REDUCERS.contributors(scene, own)
     disc = scene.of(CycloidDiscSpec)[own.disc]
     width, hole = (None if size is None else size.internal for size in (disc.width, disc.hole))
     steps = scene.options(GearStudyOptions).profile_steps
     system = PlayingSystem if own.plays else RVSystem
     measures = tuple(_measure(scene, name, spec, own.output) for name, spec in scene.measures.items())
-    of_gears = implausible_stage(scene, own)
+    of_gears = _implausible(scene, own)
     return system(scene.scene, contributors, measures, own, acts, width, hole, steps, implausible=of_gears)
 
 

@@ -2,17 +2,15 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, ClassVar, Final
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
-from tol3d.cycloid.from_scene import implausible_stage, parts_of, reducer_of
-from tol3d.cycloid.grammar.measures import CycloidMeasureSpec
+from tol3d.cycloid.from_scene import REDUCERS
 from tol3d.cycloid.grammar.moves import RVReducerSpec
-from tol3d.cycloid.grammar.parts import CrankCarrierSpec, CrankshaftSpec, CycloidDiscSpec, PinRingSpec
+from tol3d.cycloid.grammar.parts import CycloidDiscSpec
 from tol3d.cycloid.reducer.deviated import RVDeviated
-from tol3d.cycloid.reducer.draws import acts_of, draw_of
 from tol3d.cycloid.reducer.formula import stages_by_formula
 from tol3d.cycloid.reducer.neglected import BEND, BentTurning
 from tol3d.cycloid.reducer.problems import problems_at
@@ -26,15 +24,11 @@ from tol3d.gearing.model.brought import Brought
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import turned
 from tol3d.reducers.deviations import Acts
-from tol3d.reducers.from_scene import contributors_in_trains, refuse_unused
-from tol3d.reducers.link import UNFOLLOWED, Lost, ReducerLink, brought_by, ends_of, refuse_alone
+from tol3d.reducers.link import UNFOLLOWED, Actions, Lost, ReducerLink
 from tol3d.reducers.trials import Solver
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
-
-PARTS: Final = (PinRingSpec, CycloidDiscSpec, CrankshaftSpec, CrankCarrierSpec)
-"""Kinds of part that stand in reducers alone."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,33 +165,12 @@ def reducers_as_links(scene: Scene) -> Brought:
     Raises:
         SceneError: it cannot be built, or such a train cannot have it; with its place.
     """
-    specs = {str(name): spec for name, spec in scene.of(RVReducerSpec).items()}
-    reducers = {name: reducer_of(scene, name, spec) for name, spec in specs.items()}
-    parts = {name: parts_of(spec) for name, spec in specs.items()}
-    owners = {part: own for name, own in reducers.items() for part in parts[name]}
-    refuse_alone(scene, CycloidMeasureSpec, reducers, "reducer")
-    refuse_unused(scene, PARTS, owners, "an RV reducer")
-    contributors, actions = contributors_in_trains(scene, owners, acts_of, draw_of)
-    links = [_link(scene, own, tuple(actions[name])) for name, own in reducers.items()]
-    warnings = (line for own in reducers.values() for line in implausible_stage(scene, own))
-    return brought_by(links, parts, contributors, warnings)
+    return REDUCERS.as_links(scene, _link)
 
 
-def _link(scene: Scene, own: RVSet, actions: tuple[tuple[str, Acts], ...]) -> RVLink:
-    """A reducer as a link of the shafts that turn with its input and its carrier."""
-    disc = scene.of(CycloidDiscSpec)[own.disc]
+def _link(scene: Scene, own: RVSet, move: RVReducerSpec, actions: Actions) -> RVLink:
+    disc = scene.of(CycloidDiscSpec)[move.disc]
     hole = None if disc.hole is None else disc.hole.internal
     sun_level = ShownReducer(own, RVDeviated.nothing(own, 1), 0.0, own.width, hole).shapes.sun_level
-    driver, driven, offset, height = ends_of(scene, own, {own.input: sun_level, own.output: 0.0})
-    return RVLink(
-        name=own.name,
-        driver=driver,
-        driven=driven,
-        rate=1 / own.ratio,
-        offset=offset,
-        own=own,
-        height=height,
-        sun_level=sun_level,
-        actions=actions,
-        crank_hole=hole,
-    )
+    link = RVLink.between(scene, own, actions, {own.input: sun_level, own.output: 0.0})
+    return replace(link, sun_level=sun_level, crank_hole=hole)

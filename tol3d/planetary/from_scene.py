@@ -16,14 +16,14 @@ from tol3d.planetary.grammar.measures import (
     PlanetaryTransmissionErrorSpec,
 )
 from tol3d.planetary.grammar.moves import PlanetarySpec
-from tol3d.planetary.grammar.parts import FlexibleCarrierSpec
+from tol3d.planetary.grammar.parts import CarrierSpec, FlexibleCarrierSpec, PlanetSpec
 from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
 from tol3d.planetary.model.draws import acts_of, draw_of
 from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.planetary.refusals import planetary_set
+from tol3d.planetary.refusals import set_of
 from tol3d.planetary.spring_curve import LeafSpring
 from tol3d.planetary.system import PlanetarySystem
-from tol3d.reducers.from_scene import contributors_of
+from tol3d.reducers.from_scene import ReducerKind
 from tol3d.reducers.trials import ReducerMeasure, reducer_measure
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, larger_end, warned
@@ -32,15 +32,13 @@ from tol3d.scene.place import KeyPath
 HALF: Final = Implausible(0.5)
 
 
-def implausible_set(scene: Scene, own: PlanetarySet, made: Made) -> tuple[str, ...]:
+def _implausible(scene: Scene, own: PlanetarySet) -> tuple[str, ...]:
     """Warnings of a set.
-
-    Args:
-        made: its gears by their names, nominal.
 
     Raises:
         SceneError: a tooth is thinned until nothing is left of its tip.
     """
+    made = made_gears(scene, own)
     return (*implausible_teeth(scene, made), *_pins(scene, own, made))
 
 
@@ -83,26 +81,30 @@ def _reach(scene: Scene, spec: PlanetPinSpec | BorePositionSpec) -> tuple[float,
     return larger_end(law), law.extremes[0]
 
 
+SETS: Final = ReducerKind(
+    "a set", PlanetarySpec, PlanetaryMeasureSpec, (PlanetSpec, CarrierSpec), set_of, _implausible, acts_of, draw_of
+)
+
+
 def planetary_system(scene: Scene) -> PlanetarySystem:
     """System of a planetary set, from its scene.
 
     Raises:
         SceneError: kinds that do not act on such a set, or a set that cannot be built, with its numbers.
     """
-    own = planetary_set(scene)
-    contributors, acts = contributors_of(scene, own, acts_of, draw_of)
-    made = made_gears(scene, own)
+    own = SETS.alone(scene)
+    contributors, acts = SETS.contributors(scene, own)
     return PlanetarySystem(
         scene.scene,
         contributors,
         tuple(_measure(scene, own, name, spec) for name, spec in scene.measures.items()),
         own,
         acts,
-        made,
+        made_gears(scene, own),
         scene.of(PlanetarySpec)[own.name].friction,
         scene.options(GearStudyOptions).profile_steps,
         _leaf_spring(scene.parts[own.carrier]),
-        implausible=implausible_set(scene, own, made),
+        implausible=_implausible(scene, own),
     )
 
 

@@ -11,26 +11,8 @@ from tol3d.planetary.grammar.moves import PlanetarySpec
 from tol3d.planetary.grammar.parts import FlexibleCarrierSpec, PlanetSpec
 from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
 from tol3d.planetary.model.set_mesh import SetGear, SetMesh
-from tol3d.reducers.from_scene import only_reducer, refuse_unused, unlike
+from tol3d.reducers.from_scene import unlike
 from tol3d.scene import Scene
-from tol3d.scene.part import PartSpec
-
-
-def planetary_set(scene: Scene) -> PlanetarySet:
-    """The set of a scene.
-
-    Raises:
-        SceneError: not one set and nothing else, or one that cannot be put together.
-    """
-    name, spec = only_reducer(scene, PlanetarySpec)
-    own = set_of(scene, name, spec)
-    refuse_unused(scene, (PartSpec,), parts_of(own, spec), repr(name))
-    return own
-
-
-def parts_of(own: PlanetarySet, spec: PlanetarySpec) -> set[str]:
-    """The parts of a set: central gears, carrier, planet and its gears."""
-    return {*own.shafts, *(gear.name for gear in own.gears), spec.planet}
 
 
 def set_of(scene: Scene, name: str, spec: PlanetarySpec) -> PlanetarySet:

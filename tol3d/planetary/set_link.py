@@ -1,7 +1,7 @@
 """Planetary sets between two shafts of a train, whose play is the set's lost motion at its output."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,20 +14,15 @@ from tol3d.numerics.programme import NO_ROOM
 from tol3d.planetary.exact.contact import Contact
 from tol3d.planetary.exact.shown import Made, ShownSet, heights_of, made_gears, shown_set
 from tol3d.planetary.first_order.stack_up import StackUp
-from tol3d.planetary.from_scene import implausible_set
-from tol3d.planetary.grammar.measures import PlanetaryMeasureSpec
+from tol3d.planetary.from_scene import SETS
 from tol3d.planetary.grammar.moves import PlanetarySpec
-from tol3d.planetary.grammar.parts import CarrierSpec, PlanetSpec
 from tol3d.planetary.model.deviated import Deviated
-from tol3d.planetary.model.draws import acts_of, draw_of
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at
-from tol3d.planetary.refusals import parts_of, set_of
 from tol3d.planetary.sections import set_sections
 from tol3d.planetary.trials import SOLVERS
 from tol3d.reducers.deviations import Acts
-from tol3d.reducers.from_scene import contributors_in_trains, refuse_unused
-from tol3d.reducers.link import UNFOLLOWED, Lost, ReducerLink, brought_by, ends_of, refuse_alone
+from tol3d.reducers.link import UNFOLLOWED, Actions, Lost, ReducerLink
 from tol3d.reducers.trials import Solver
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
@@ -50,7 +45,7 @@ class SetLink(ReducerLink):
     solvers: ClassVar[Mapping[str, Solver]] = SOLVERS
 
     own: PlanetarySet
-    made: Made
+    made: Made = field(default_factory=dict)
     friction: float | None = None
 
     @property
@@ -140,31 +135,10 @@ def sets_as_links(scene: Scene) -> Brought:
     Raises:
         SceneError: it cannot be built, or such a train cannot have it; with its place.
     """
-    specs = {str(name): spec for name, spec in scene.of(PlanetarySpec).items()}
-    sets = {name: set_of(scene, name, spec) for name, spec in specs.items()}
-    parts = {name: frozenset(parts_of(own, specs[name])) for name, own in sets.items()}
-    owners = {part: own for name, own in sets.items() for part in parts[name]}
-    refuse_alone(scene, PlanetaryMeasureSpec, sets, "set")
-    refuse_unused(scene, (PlanetSpec, CarrierSpec), owners, "a set")
-    contributors, actions = contributors_in_trains(scene, owners, acts_of, draw_of)
-    links = [_link(scene, own, specs[name], tuple(actions[name])) for name, own in sets.items()]
-    warnings = (line for each in links for line in implausible_set(scene, each.own, each.made))
-    return brought_by(links, parts, contributors, warnings)
+    return SETS.as_links(scene, _link)
 
 
-def _link(scene: Scene, own: PlanetarySet, spec: PlanetarySpec, actions: tuple[tuple[str, Acts], ...]) -> SetLink:
-    """A set as a link of the shafts that turn with its input and its output."""
+def _link(scene: Scene, own: PlanetarySet, move: PlanetarySpec, actions: Actions) -> SetLink:
     made = made_gears(scene, own)
-    driver, driven, offset, height = ends_of(scene, own, heights_of(own, made))
-    return SetLink(
-        name=own.name,
-        driver=driver,
-        driven=driven,
-        rate=1 / own.ratio,
-        offset=offset,
-        own=own,
-        made=made,
-        height=height,
-        actions=actions,
-        friction=spec.friction,
-    )
+    link = SetLink.between(scene, own, actions, heights_of(own, made))
+    return replace(link, made=made, friction=move.friction)

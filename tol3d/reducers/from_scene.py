@@ -1,19 +1,17 @@
-"""Reducers from scenes, alone and in trains: their moves and parts, and of each tolerance its effect and its draw.
-
-What a tolerance does to a reducer its model says, by two functions: `acts_of` and `draw_of`.
-"""
+"""Reducers from scenes, alone and in trains: their moves and parts, and of each tolerance its effect and its draw."""
 
 import math
-from collections.abc import Callable, Container, Mapping
-from typing import Any, TypeVar
+from collections.abc import Callable, Container, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 from tol3d.distributions import Distribution
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec
-from tol3d.gearing.model.brought import acting_in, tolerances_of
-from tol3d.gearing.model.contributor import Contributor
+from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, tolerances_of
 from tol3d.gearing.model.pairs import cylindrical_gear
 from tol3d.gears.pair import SAME_LENGTH
 from tol3d.reducers.deviations import Acts
+from tol3d.reducers.link import Actions, ReducerLink
 from tol3d.scene import Scene
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.part import PartSpec
@@ -23,34 +21,115 @@ from tol3d.system.each_planar import EachPlanar
 from tol3d.system.plain import UNITS, PlainContributor
 from tol3d.units import Quantity
 
-ActsOf = Callable[[Scene, Any, str, Any], Acts]
-"""Effect of a tolerance on a reducer, from the scene, the reducer, its name and the tolerance.
-
-Raises a SceneError where it has none.
-"""
-DrawOf = Callable[[Scene, Any, Acts, Any], Draw]
-"""Draw of its components, from the scene, the reducer, its effect and the tolerance."""
-Move = TypeVar("Move", bound=MoveSpec)
-Actions = Mapping[str, list[tuple[str, Acts]]]
+LinkOf = Callable[[Scene, Any, Any, Actions], ReducerLink]
+"""Link of a train, from the scene, the reducer's model, its move, and the effects of its contributors."""
 
 
-def only_reducer(scene: Scene, kind: type[Move]) -> tuple[str, Move]:
-    """The reducer of a scene that has nothing else, and its name.
+@dataclass(frozen=True)
+class ReducerKind:
+    """A kind of reducers in scenes.
 
-    Raises:
-        SceneError: several moves.
+    Args:
+        called: its noun with an article, such as "a set".
+        move: kind of move that stands for one; it refers to all its parts.
+        measures: kinds of measure of one that is alone in its scene.
+        parts: kinds of part that stand in such reducers alone.
+        model_of: model of one, from the scene, its name and its move; raises a SceneError where it cannot be built.
+        implausible: warnings of one, from the scene and its model.
+        acts_of: effect of a tolerance, from the scene, the model, its name and the tolerance; raises a SceneError where
+            it has none.
+        draw_of: draw of its components, from the scene, the model, its effect and the tolerance.
     """
-    reducers = scene.of(kind)
-    others = [name for name in scene.moves if name not in reducers]
-    if others or len(reducers) != 1:
-        words = f"expected one {kind.words.split(maxsplit=1)[1]} and no other move, got {len(scene.moves)} moves"
-        train = "" if others else "; several make a train, which a move of kind train names"
-        raise scene.refuse(("moves", (others or list(reducers)[-1:])[0]), words + train)
-    ((name, spec),) = reducers.items()
-    return str(name), spec
+
+    called: str
+    move: type[MoveSpec]
+    measures: type[Any]
+    parts: tuple[type[PartSpec], ...]
+    model_of: Callable[[Scene, str, Any], Any]
+    implausible: Callable[[Scene, Any], Iterable[str]]
+    acts_of: Callable[[Scene, Any, str, Any], Acts]
+    draw_of: Callable[[Scene, Any, Acts, Any], Draw]
+
+    def alone(self, scene: Scene) -> Any:
+        """Model of the reducer of a scene that has nothing else.
+
+        Raises:
+            SceneError: not one reducer and nothing else, or one that cannot be built.
+        """
+        reducers = scene.of(self.move)
+        others = [name for name in scene.moves if name not in reducers]
+        if others or len(reducers) != 1:
+            noun = self.move.words.split(maxsplit=1)[1]
+            words = f"expected one {noun} and no other move, got {len(scene.moves)} moves"
+            train = "" if others else "; several make a train, which a move of kind train names"
+            raise scene.refuse(("moves", (others or list(reducers)[-1:])[0]), words + train)
+        ((name, spec),) = reducers.items()
+        own = self.model_of(scene, str(name), spec)
+        _refuse_unused(scene, (PartSpec,), parts_of(spec), repr(name))
+        return own
+
+    def contributors(self, scene: Scene, own: Any) -> tuple[tuple[PlainContributor, ...], Mapping[str, Acts]]:
+        """Contributors of a reducer that is alone in its scene, and the effect of each by its name.
+
+        Raises:
+            SceneError: a tolerance that does not act on it.
+        """
+        contributors, effects = [], {}
+        for name, spec in scene.tolerances.items():
+            effects[name] = acts = self.acts_of(scene, own, name, spec)
+            unit, per_unit = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"]
+            nominal = spec.nominal if isinstance(spec, ToleranceSpec) else ""
+            draw = self.draw_of(scene, own, acts, spec)
+            contributors.append(
+                PlainContributor(
+                    name, spec.kind, draw, unit, per_unit, spec.description, least=acts.least, nominal=nominal
+                )
+            )
+        return tuple(contributors), effects
+
+    def as_links(self, scene: Scene, link_of: LinkOf) -> Brought:
+        """All reducers of a scene as links of a train, and what acts on them.
+
+        Raises:
+            SceneError: one that cannot be built, or that such a train cannot have; with its place.
+        """
+        moves = scene.of(self.move)
+        reducers = {str(name): self.model_of(scene, str(name), spec) for name, spec in moves.items()}
+        parts = {name: parts_of(moves[name]) for name in reducers}
+        owners = {part: own for name, own in reducers.items() for part in parts[name]}
+        self._refuse_measures(scene, reducers)
+        _refuse_unused(scene, self.parts, owners, self.called)
+        actions: dict[str, list[tuple[str, Acts]]] = {name: [] for name in reducers}
+        contributors = {}
+        for name, own in tolerances_of(scene, owners):
+            spec: Any = scene.tolerances[name]
+            acts = self.acts_of(scene, own, name, spec)
+            actions[own.name].append((name, acts))
+            draw = self.draw_of(scene, own, acts, spec)
+            contributors[name] = acting_in(scene, name, own.name, draw, acts.turning, acts.least)
+        links = [link_of(scene, own, moves[name], tuple(actions[name])) for name, own in reducers.items()]
+        warnings = [line for own in reducers.values() for line in self.implausible(scene, own)]
+        brought = (BroughtLink(link, parts[link.name], (link.own.input, link.own.output)) for link in links)
+        return Brought(tuple(brought), contributors, tuple(warnings))
+
+    def _refuse_measures(self, scene: Scene, reducers: Mapping[str, Any]) -> None:
+        """Refuse measures of a reducer alone, which trains read."""
+        for name, spec in scene.of(self.measures).items():
+            own, noun = reducers[spec.of], self.called.rpartition(" ")[2]
+            raise scene.refuse(
+                ("measures", name, "kind"),
+                f"expected a measure of trains, for {spec.of!r} is a stage of one, got {spec.kind}; take lost_motion "
+                f"of a train whose output turns with {own.output!r}, and of the {noun} alone one whose held shaft "
+                f"turns with {own.input!r}",
+            )
 
 
-def refuse_unused(scene: Scene, kinds: tuple[type[PartSpec], ...], used: Container[str], words: str) -> None:
+def parts_of(move: MoveSpec) -> frozenset[str]:
+    """Parts of a reducer: all that its move refers to."""
+    return frozenset(reference.name for reference in move.references())
+
+
+def _refuse_unused(scene: Scene, kinds: tuple[type[PartSpec], ...], used: Container[str], words: str) -> None:
     """Refuse parts of some kinds that no move names, which `words` of the scene would have."""
     for name, part in scene.parts.items():
         if isinstance(part, kinds) and name not in used:
@@ -64,50 +143,6 @@ def unlike(scene: Scene, one: str, other: str) -> tuple[str, Quantity, Quantity]
         if not math.isclose(own.internal, mate.internal, rel_tol=SAME_LENGTH):
             return field, own, mate
     return None
-
-
-def contributors_of(
-    scene: Scene, own: Any, acts_of: ActsOf, draw_of: DrawOf
-) -> tuple[tuple[PlainContributor, ...], Mapping[str, Acts]]:
-    """Contributors of a reducer that is alone in its scene, and the effect of each by its name.
-
-    Raises:
-        SceneError: a tolerance that does not act on it.
-    """
-    contributors, effects = [], {}
-    for name, spec in scene.tolerances.items():
-        effects[name] = acts = acts_of(scene, own, name, spec)
-        unit, per_unit = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"]
-        nominal = spec.nominal if isinstance(spec, ToleranceSpec) else ""
-        draw = draw_of(scene, own, acts, spec)
-        contributors.append(
-            PlainContributor(name, spec.kind, draw, unit, per_unit, spec.description, least=acts.least, nominal=nominal)
-        )
-    return tuple(contributors), effects
-
-
-def contributors_in_trains(
-    scene: Scene, owners: Mapping[str, Any], acts_of: ActsOf, draw_of: DrawOf
-) -> tuple[Mapping[str, Contributor], Actions]:
-    """Contributors of the reducers of trains, and their effects by the reducer's name.
-
-    Args:
-        scene: the scene.
-        owners: the reducer that has a part, by the part's name.
-        acts_of, draw_of: see ActsOf and DrawOf.
-
-    Raises:
-        SceneError: a tolerance of such a part that does not act on its reducer.
-    """
-    actions: dict[str, list[tuple[str, Acts]]] = {own.name: [] for own in owners.values()}
-    contributors = {}
-    for name, own in tolerances_of(scene, owners):
-        spec: Any = scene.tolerances[name]
-        acts = acts_of(scene, own, name, spec)
-        actions[own.name].append((name, acts))
-        draw = draw_of(scene, own, acts, spec)
-        contributors[name] = acting_in(scene, name, own.name, draw, acts.turning, acts.least)
-    return contributors, actions
 
 
 def law_of(scene: Scene, spec: Any) -> Distribution:

@@ -2,7 +2,7 @@
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
-from tol3d.gearing.model.brought import Brought, BroughtLink, shaft_of
-from tol3d.gearing.model.contributor import Contributor
+from tol3d.gearing.model.brought import shaft_of
 from tol3d.numerics.arrays import Array
 from tol3d.reducers.deviations import Acts, Deviations
 from tol3d.reducers.trials import Solver
@@ -22,6 +21,8 @@ from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.taken import ROWS_AT_ONCE
 
 UNFOLLOWED: Final = "whose error recurs with turns of its output, not of the motor ({} reads it, in a scene of its own)"
+Actions = tuple[tuple[str, Acts], ...]
+"""Effect of each contributor, by its name; one may have several."""
 Lost = tuple[Array, Array, NDArray[np.bool_]]
 """Free turn and its middle [rad], and where the reducer jams, (trials,) each."""
 
@@ -36,7 +37,7 @@ class ReducerLink(StatedLink):
     Args:
         own: its model: names, ratio, and period in turns of the output.
         height: of its middle along the driver's z [mm].
-        actions: what each contributor acts on, by its name.
+        actions: of its contributors.
     """
 
     has_middle: ClassVar[bool] = True
@@ -51,7 +52,28 @@ class ReducerLink(StatedLink):
 
     own: Any
     height: float
-    actions: tuple[tuple[str, Acts], ...]
+    actions: Actions
+
+    @classmethod
+    def between(cls, scene: Scene, own: Any, actions: Actions, heights: Mapping[str, float]) -> Self:
+        """The link of the shafts that turn with the input and the output of a reducer.
+
+        Args:
+            scene, own, actions: see ReducerLink.
+            heights: of its input and its output over its middle [mm].
+        """
+        (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.output))
+        height = first - heights[own.input]
+        return cls(
+            name=own.name,
+            driver=driver,
+            driven=driven,
+            rate=1 / own.ratio,
+            offset=height - (last - heights[own.output]),
+            own=own,
+            height=height,
+            actions=actions,
+        )
 
     @property
     def turns(self) -> Fraction:
@@ -135,43 +157,3 @@ class ReducerLink(StatedLink):
         """See StatedLink."""
         acts = self.offsets.get(part)
         return None if acts is None else replace(self, actions=(*self.actions, (contributor, acts)))
-
-
-# from scenes ------------------------------------------------------------------------------------------
-
-
-def ends_of(scene: Scene, own: Any, heights: Mapping[str, float]) -> tuple[str, str, float, float]:
-    """Driver, driven, offset and height [mm] of the link of a reducer.
-
-    Args:
-        scene, own: the scene, and the reducer.
-        heights: of its input and its output over its middle [mm].
-    """
-    (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.output))
-    height = first - heights[own.input]
-    return driver, driven, height - (last - heights[own.output]), height
-
-
-def brought_by(
-    links: Sequence[ReducerLink],
-    parts: Mapping[str, frozenset[str]],
-    contributors: Mapping[str, Contributor],
-    warnings: Iterable[str],
-) -> Brought:
-    """Links of reducers with their parts, by name, and what acts on them."""
-    made = (BroughtLink(link, parts[link.name], (link.own.input, link.own.output)) for link in links)
-    return Brought(tuple(made), contributors, tuple(warnings))
-
-
-def refuse_alone(scene: Scene, kind: type, reducers: Mapping[str, Any], words: str) -> None:
-    """Refuse measures of a reducer alone, which trains read."""
-    for name, measure in scene.measures.items():
-        if isinstance(measure, kind):
-            spec: Any = measure
-            own = reducers[spec.of]
-            raise scene.refuse(
-                ("measures", name, "kind"),
-                f"expected a measure of trains, for {spec.of!r} is a stage of one, got {spec.kind}; take lost_motion "
-                f"of a train whose output turns with {own.output!r}, and of the {words} alone one whose held shaft "
-                f"turns with {own.input!r}",
-            )
