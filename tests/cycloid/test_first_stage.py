@@ -15,6 +15,7 @@ from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.first_stage import crank_turns, first_order_mesh, placed_mesh
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.turning import ExactTurning, LinearTurning
+from tol3d.gears import LEFT, RIGHT, Displaced, Flank
 
 OWN: RVSet = rv_system(load_scene(SCENES / "rv_250aii.yaml")).own
 TURNS = np.linspace(0.0, 1.0, 241)[None]
@@ -60,6 +61,31 @@ def test_an_eccentric_planet_swings_by_its_eccentricity_over_the_base_radius() -
         assert (found.max() - found.min()) / 2 == pytest.approx(0.01 / BASE, rel=2e-3)
         spectrum = np.abs(np.fft.rfft(found[:-1]))[1:]
         assert spectrum.argmax() + 1 == 40  # turns of a planet against the carrier
+
+
+@pytest.mark.parametrize("flank", [LEFT, RIGHT])
+def test_placed_planets_turn_to_where_the_flanks_of_a_pair_touch(flank: Flank) -> None:
+    """Their centres lie where the turn found has them; another iteration moves them by some 1e-6 of the turn."""
+    rng, carried = np.random.default_rng(3), 1e-3
+    own = RVDeviated.nothing(OWN, 3)
+    for each in (own.sun_offset, own.planet_offset, own.stage.carrier_holes, own.stage.carrier_offsets):
+        each[...] = rng.normal(0.0, 0.02, each.shape)
+    for each in (own.sun_thickness, own.planet_thickness):
+        each[...] = rng.uniform(-0.05, -0.01, each.shape)
+    found, pair, ones = placed_mesh(OWN, own, TURNS, 1, flank, carried), OWN.pair, np.ones(TURNS.shape[1])
+    crank = np.exp(-2j * np.pi / 3)  # seen in the frame of the second crank
+    for trial in range(3):
+        sun = 2 * np.pi * (2 * 40 * TURNS[0] - 1 / 3) - carried
+        planet = pair.driven_angle(sun)
+        at_sun = complex(*own.sun_offset[trial]) * np.exp(1j * sun)
+        at_planet = 63.0 + crank * complex(*(own.stage.carrier_holes[trial, 1] + own.stage.carrier_offsets[trial]))
+        at_planet = at_planet + complex(*own.planet_offset[trial, 1]) * np.exp(1j * (planet + found[trial]))
+        places = np.stack([np.stack([at.real, at.imag, 0.0 * ones], axis=-1) for at in (at_sun, at_planet)], axis=1)
+        flank_turns = np.array([own.sun_thickness[trial] / 42.0, own.planet_thickness[trial, 1] / 84.0])
+        displaced = Displaced(places, np.zeros_like(places), np.outer(ones, flank_turns))
+        turned = pair.touching_angle(sun, flank, displaced) - planet
+        assert np.abs(turned).max() > 3e-4
+        assert found[trial] == pytest.approx(turned, rel=1e-5)
 
 
 @pytest.mark.parametrize("size", [0.02, 0.01])

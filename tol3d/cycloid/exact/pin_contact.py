@@ -21,11 +21,11 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from tol3d.numerics.compiled import part
+from tol3d.numerics.small_angles import turned_by
 
 MOST_STEPS: Final = 30  # three are needed where errors are some 20 um
 TURN_XTOL: Final = 1e-12  # rad; the next step is a thousandth of it
 FOOT_XTOL: Final = 1e-9  # rad; gaps change by the square of it
-LITTLE: Final = 2.0**-5  # rad; the first term that a series leaves out is 2e-17 there
 SETTLED: Final = 0.01  # of the step before; Newton's method then errs by less than its last step
 LONGEST_STEP: Final = 0.05  # of a lobe pitch, by which the foot moves
 TURN: Final = 2.0 * np.pi
@@ -90,18 +90,6 @@ def lobe_turn(shape: Any, lobe_pitch: Any, lobe: int, right: float) -> float:
     turned: float = shape.rotation if right > 0.0 else -shape.rotation
     found: float = lobe_pitch[lobe] * shape.pins / (shape.lobes * shape.pin_circle) + turned
     return found
-
-
-@part
-def turned_by(c: float, s: float, turn: float) -> tuple[float, float]:
-    """Cosine and sine of an angle turned on; by the series where the turn is little."""
-    if abs(turn) < LITTLE:
-        t = turn * turn
-        cos = 1.0 - t * (1.0 / 2 - t * (1.0 / 24 - t * (1.0 / 720)))
-        sin = turn * (1.0 - t * (1.0 / 6 - t * (1.0 / 120 - t * (1.0 / 5040))))
-    else:
-        cos, sin = np.cos(turn), np.sin(turn)
-    return cos * c - sin * s, cos * s + sin * c
 
 
 @part

@@ -9,21 +9,18 @@ with the carrier, the sun at the origin, the planet on x.
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
+from tol3d.cycloid.exact.mesh_kernel import MeshShape, planet_turns
 from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.rv_set import RVSet
-from tol3d.gears import LEFT, RIGHT, Displaced, Flank
+from tol3d.gears import LEFT, RIGHT, Flank
 from tol3d.numerics.arrays import Array, Complex, Places
 from tol3d.numerics.plane import as_complex, as_points
 
 OneMesh = Callable[[RVSet, RVDeviated, Array, int, Flank], Array]
-
-ROUNDS: Final = 2
-"""Iterations of a planet's turn; each multiplies the error by its eccentricity over its base radius."""
 
 
 def crank_turns(
@@ -65,23 +62,31 @@ def placed_mesh(
         carried: turn of the carrier beyond its place while the sun stands (trials, positions) [rad]. 100 arc
             seconds turn an eccentricity of 10 um by 5 nm.
     """
-    pair, shape = own.pair, (len(deviated.sun_thickness), turns.shape[1])
-    sun = angles(own, turns, crank)[0] - carried
-    planet = pair.driven_angle(sun)
-    origins = np.zeros((*shape, 2, 3))
-    origins[..., 0, :2] = as_points(as_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun))
-    place = pair.centre_distance + _carried(own, deviated, crank)[:, None]
-    thicker = np.stack([deviated.sun_thickness, deviated.planet_thickness[:, crank]], axis=-1)
-    reference = np.array([gear.module * gear.teeth for gear in (pair.pinion, pair.wheel)])
-    flank_turn = np.broadcast_to((thicker / reference)[:, None], (*shape, 2)).reshape(-1, 2)
-    rows = np.broadcast_to(sun, shape).reshape(-1)
-    upright, turn = np.zeros((len(rows), 2, 3)), np.zeros(shape)
-    for _ in range(ROUNDS):
-        off = as_complex(deviated.planet_offset[:, crank])[:, None] * np.exp(1j * (planet + turn))
-        origins[..., 1, :2] = as_points(place + off)
-        displaced = Displaced(origins.reshape(-1, 2, 3), upright, flank_turn)
-        turn = (pair.touching_angle(rows, flank, displaced) - pair.driven_angle(rows)).reshape(shape)
-    return turn
+    pair, sizes = own.pair, (len(deviated.sun_thickness), turns.shape[1])
+    sun, planet = angles(own, turns, crank)
+    thicker = deviated.sun_thickness + deviated.planet_thickness[:, crank]
+    found = np.empty(sizes)
+    planet_turns(
+        MeshShape(
+            distance=pair.centre_distance,
+            base_radii=pair.base_radii,
+            wheel_base_radius=pair.wheel.base_radius,
+            tan=math.tan(pair.working_pressure_angle),
+            ratio=pair.ratio,
+            flank=float(flank),
+        ),
+        *(
+            np.require(each, dtype=np.float64, requirements=["C", "W"])
+            for each in (
+                as_points(np.exp(1j * sun)), as_points(np.exp(1j * planet)), deviated.sun_offset,
+                deviated.planet_offset[:, crank], as_points(_carried(own, deviated, crank)),
+                thicker * math.cos(pair.pinion.pressure_angle) / 2 - pair.normal_backlash / 2,
+                np.broadcast_to(carried, sizes),
+            )
+        ),
+        found,
+    )  # fmt: skip
+    return found
 
 
 def first_order_mesh(own: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank) -> Array:

@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.cycloid.exact.contact_kernel import first_contacts
+from tol3d.cycloid.exact.mesh_kernel import planet_turns
 from tol3d.cycloid.exact.rest import RestStage
 from tol3d.cycloid.exact.rest_kernel import NOT_HELD, rests
 from tol3d.cycloid.first_order.linear_rest import Forces, LinearRest
@@ -200,7 +201,8 @@ def linear_turning(own: RVSet) -> Turning:
 
 SOLVERS: Final[Mapping[str, Solver]] = {
     "exact": Solver(
-        exact_turning, lambda own: cone_programmes.kept and rests.kept if own.plays else first_contacts.kept
+        exact_turning,
+        lambda own: (cone_programmes.kept and rests.kept if own.plays else first_contacts.kept) and planet_turns.kept,
     ),
     ANALYTIC_METHOD: Solver(linear_turning, lambda own: cone_programmes.kept if own.plays else first_order_turns.kept),
 }

@@ -23,12 +23,12 @@ import numpy as np
 from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import fill, fill_matrix
 from tol3d.numerics.programme import OK, STALLED, new_rooms, solve_lp
+from tol3d.numerics.small_angles import azimuth
 
 STILL: Final = 1e-11  # rad; turns change by less: at 100 mm that is 1e-9 mm
 MOST_STEPS: Final = 25
 LOOSE: Final = 20.0  # twice the two contacts of a pair, with ratios of base radii up to 4
 SMALL: Final = 0.0625  # rad; the first term that a series leaves out is 1e-19 there
-SLIGHT: Final = 2.0**-7  # tangent, of which the series of the arc tangent leaves out 1e-18 of it
 
 
 @nested
@@ -53,18 +53,6 @@ def write_facing(turns: Any, number: int, senses: Any, distance: float, facing: 
             facing[i, 1] = turn * (1.0 - t * (1.0 / 6 - t * (1.0 / 120 - t * (1.0 / 5040 - t * (1.0 / 362880)))))
         else:
             facing[i, 0], facing[i, 1] = np.cos(turn), np.sin(turn)
-
-
-@nested
-def azimuth(y: float, x: float) -> float:
-    """Azimuth of a point; of one near the axis x by the series of the arc tangent."""
-    if not abs(y) < SLIGHT * x:
-        found: float = np.arctan2(y, x)
-        return found
-    z = y / x
-    t = z * z
-    small: float = z * (1.0 - t * (1.0 / 3 - t * (1.0 / 5 - t * (1.0 / 7 - t * (1.0 / 9)))))
-    return small
 
 
 @nested
