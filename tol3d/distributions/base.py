@@ -5,6 +5,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, Protocol, Self
 
 import numpy as np
@@ -109,7 +110,7 @@ class Distribution(ABC):
         """The least and the largest deviation by which its size is judged: `low` and `high`, or what draws exceed."""
         return self.low, self.high
 
-    @property
+    @cached_property
     def radius(self) -> float:
         """The end for worst cases of a length in a direction: its larger limit, or the range of 99.73 %."""
         if self.limits:

@@ -14,14 +14,12 @@ import numpy as np
 
 from tol3d.assembly.model import Acts, Move
 from tol3d.assembly.placing.placer import ALL_OK, Placer
-from tol3d.assembly.placing.poses import Codes, Pose, about
+from tol3d.assembly.placing.poses import Codes, Pose
 from tol3d.assembly.placing.world import World as PlacedWorld
 from tol3d.assembly.torsors.torsor import cross_matrix
 from tol3d.assembly.torsors.world import World as TorsorWorld
 from tol3d.machine.grammar.open_chain import OpenChainSpec
 from tol3d.numerics.arrays import Array
-
-_Z = np.array([[0.0], [0.0], [1.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,15 +94,26 @@ class Turning(Placer):
         """See Placer: every trial is placed."""
         for joint in self.move.joints:
             turn = joint.angle + world.columns[joint.column]
-            turned = Pose(about(_Z, np.cos(turn), np.sin(turn)), np.zeros((3, 1)))
-            if joint.frame:
-                own = world.own[joint.part].displacement(joint.frame)
-            else:
-                seat = world.on_body(joint.seat, joint.part)
-                own = seat.pose @ Pose.of(self._nominal_seat(world, joint)).inverse
-            pose = world.placed(joint.axis).pose @ turned @ Pose.of(joint.zero) @ own.inverse
-            world = world.with_part_at(joint.part, pose)
+            axis, link = self._on_parts(world, joint)
+            turned = (world.poses[world.part_of(joint.axis)] @ axis).turned_about_z(np.cos(turn), np.sin(turn))
+            world = world.with_part_at(joint.part, turned @ link)
         return world, ALL_OK
+
+    def _on_parts(self, world: PlacedWorld, joint: Joint) -> tuple[Pose, Pose]:
+        """The axis in the part before, and the link in the frame of the axis at input 0; kept, see World."""
+        key = f"{joint.name} of {self.move.name}"
+        if key in world.kept:
+            axis, link = world.kept[key]
+            return axis.repeated(world.trials), link.repeated(world.trials)
+        if joint.frame:
+            own = world.own[joint.part].displacement(joint.frame)
+        else:
+            seat = world.on_body(joint.seat, joint.part)
+            own = seat.pose @ Pose.of(self._nominal_seat(world, joint)).inverse
+        found = world.on_part(joint.axis).pose, Pose.of(joint.zero) @ own.inverse
+        if joint.frame or world.part_of(joint.seat) == joint.part:  # else it follows from how two parts are welded
+            world.kept[key] = found
+        return found
 
     @staticmethod
     def _nominal_seat(world: PlacedWorld, joint: Joint) -> Array:

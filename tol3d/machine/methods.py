@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model.statuses import NO_BUILD
 from tol3d.assembly.placing import method as placing
+from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.torsors import method as torsors
 from tol3d.gearing.model.measure import Measure as GearMeasure
@@ -31,8 +32,8 @@ from tol3d.system.trials import Trials
 
 Details = dict[str, NDArray[np.generic]]
 
-ROWS: Final = 16384
-"""Builds that are placed at once where joints lie on several flanks."""
+Kept = dict[int, dict[str, Any]]
+"""What is found of trials once for all poses and flanks, by block; see tol3d.assembly.placing.world.World."""
 
 NOT_TURNED: Final = int(FROM_ASSEMBLIES[NO_BUILD])
 """The status of parts on a joint whose train jams or finds no contact."""
@@ -97,8 +98,9 @@ class MachineMethod:
         needed = {own.name: own for drive, pose in turning for own in [drive.readings[pose]]}
         first = [name for name in others if system.pose_of[name] == next(iter(system.poses))]
         still = first if not turning else [name for name in first if not system.joints_of(name)]
-        reads_gears = bool(of_gears or needed)
-        values, codes, details = self._read(trials, (*system.bores.names, *still) if reads_gears else still)
+        reads_gears, kept = bool(of_gears or needed), Kept()
+        read = (*system.bores.names, *still) if reads_gears else still
+        values, codes, details = self._placed(system.of_assembly(trials.deviations), read, "", kept)
         hidden = {reason_column(name) for name in system.bores.names}
         shown: Details = {name: own for name, own in details.items() if name not in hidden}
         found = Answers(
@@ -110,14 +112,14 @@ class MachineMethod:
             if of_gears:
                 gears = self._without_axes(self.gears.answers(seen, of_gears), of_gears, failed)
             turned = self._turned_by(seen, list(needed.values()), failed)
-        found = self._with_poses(found, trials, [name for name in others if name not in still], turned)
+        found = self._with_poses(found, trials, [name for name in others if name not in still], turned, kept)
         for measure in worst:
-            found = _joined(found, self._worst(trials, measure, turned))
+            found = _joined(found, self._worst(trials, measure, turned, kept))
         return _joined(gears, found) if of_gears else found
 
     def gear_trials(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
         """Trials as the gears see them, and by shaft the status of its bores (trials,), codes of this system."""
-        values, codes, _ = self._read(trials, self.system.bores.names)
+        values, codes, _ = self._placed(self.system.of_assembly(trials.deviations), self.system.bores.names, "", {})
         return self._seen(trials, values, codes)
 
     def in_pose(self, trials: Trials, pose: str) -> Array:
@@ -152,18 +154,20 @@ class MachineMethod:
         """Turns of joints by the trains."""
         return Turning(self.system, self.gears)
 
-    def _with_poses(self, answers: Answers, trials: Trials, names: Sequence[str], turned: Turned) -> Answers:
+    def _with_poses(
+        self, answers: Answers, trials: Trials, names: Sequence[str], turned: Turned, kept: Kept
+    ) -> Answers:
         """Answers, and measures of the assembly in their poses."""
         poses = self.system.pose_of
         for pose in dict.fromkeys(poses[name] for name in names):
             own = [name for name in names if poses[name] == pose]
-            answers = _joined(answers, self._in_pose(trials, own, pose, turned))
+            answers = _joined(answers, self._in_pose(trials, own, pose, turned, kept))
         return answers
 
-    def _in_pose(self, trials: Trials, names: Sequence[str], pose: str, turned: Turned) -> Answers:
+    def _in_pose(self, trials: Trials, names: Sequence[str], pose: str, turned: Turned, kept: Kept) -> Answers:
         system = self.system
         deviations = self._turned(trials, pose, turned)
-        values, codes, details = self._placed(deviations, names, pose)
+        values, codes, details = self._placed(deviations, names, pose, kept)
         status, reasons = self._status(codes, names), Details()
         found = {name: np.asarray(values[name])[:, None] for name in names}
         for name in names:
@@ -200,15 +204,16 @@ class MachineMethod:
             deviations[:, drawn[drive.turn].start] = HALF * side * play
         return deviations
 
-    def _worst(self, trials: Trials, measure: WorstMeasure, turned: Turned) -> Answers:
+    def _worst(self, trials: Trials, measure: WorstMeasure, turned: Turned, kept: Kept) -> Answers:
         """The largest over poses, and over flanks; of a trial in which a joint has no play there is none."""
         largest, place = np.full(len(trials), -np.inf), np.full(len(trials), "", dtype=f"<U{measure.longest}")
         status, reason = np.zeros(len(trials), dtype=np.int8), np.full(len(trials), "")
+        at_once = max(1, placing.BLOCK // len(trials))  # in one block, or trial by trial in the blocks that are kept
         for pose, name in measure.sizes:
             drives = self.system.joints_of(name)
-            for sides in batched(measure.combinations([drive.joint for drive in drives]), max(1, ROWS // len(trials))):
+            for sides in batched(measure.combinations([drive.joint for drive in drives]), at_once):
                 builds = np.concatenate([self._turned(trials, pose, turned, each) for each in sides])
-                values, codes, _ = self._placed(builds, [name], pose)
+                values, codes, _ = self._placed(builds, [name], pose, kept)
                 shape = len(sides), len(trials)
                 if codes:
                     own = FROM_ASSEMBLIES[codes[name]].reshape(shape).max(axis=0)
@@ -226,22 +231,24 @@ class MachineMethod:
 
     # bores ------------------------------------------------------------------------------------------
 
-    def _read(
-        self, trials: Trials, names: Sequence[str]
-    ) -> tuple[Mapping[str, Array], Mapping[str, Codes], Mapping[str, NDArray[np.generic]]]:
-        """Measures of the assembly in its first pose that no joint turns; see _placed."""
-        return self._placed(self.system.of_assembly(trials.deviations), names, "")
-
     def _placed(
-        self, deviations: Array, names: Sequence[str], pose: str
+        self, deviations: Array, names: Sequence[str], pose: str, kept: Kept
     ) -> tuple[Mapping[str, Array], Mapping[str, Codes], Mapping[str, NDArray[np.generic]]]:
-        """Measures of the assembly, their statuses in its own codes, empty if all are built, and details."""
+        """Measures of the assembly, their statuses in its own codes, empty if all are built, and details.
+
+        Args:
+            deviations: of the assembly (trials, columns), the trials once or repeated with other turns of joints.
+            names: of the measures.
+            pose: of the joints; "" for the first one.
+            kept: found of the trials before, in other poses.
+        """
         first = next(iter(self.system.poses))
         its_bores = not pose or pose == first
         assembly = self.system.bores.assembly if its_bores else self.system.poses[pose].assembly
         if not self.exact:
             return torsors.values(assembly, deviations, names), {}, {}
-        found, decided = placing.answers(assembly, deviations, names, self.solids.get(first if its_bores else pose))
+        plan = planned(assembly, self.solids.get(first if its_bores else pose))
+        found, decided = placing.planned_answers(plan, deviations, names, kept)
         values = {name: own for name, (own, _) in found.items()}
         return values, {name: codes for name, (_, codes) in found.items()}, decided
 

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from tol3d.assembly.model.feature import Axis, Contribution, Feature, Point, RoundPlane
-from tol3d.assembly.placing.poses import Pose, dot, least_rotation, length, product, rotated, square_to, unit
+from tol3d.assembly.placing.poses import Pose, dot, least_rotation, length, product, repeated, rotated, square_to, unit
 from tol3d.numerics.arrays import Array
 
 _Z = np.array([[0.0], [0.0], [1.0]])
@@ -83,6 +83,11 @@ class ActualFeature:
     def moved(self, pose: Pose) -> "ActualFeature":
         """It in another frame, to which the pose takes its own."""
         return replace(self, base=pose @ self.base)
+
+    def repeated(self, trials: int) -> "ActualFeature":
+        """It in trials that follow each other several times."""
+        span = tuple(repeated(own, trials) for own in self.span)
+        return replace(self, base=self.base.repeated(trials), centre=repeated(self.centre, trials), span=span)
 
     def rise(self, direction: Array) -> Array:
         """Extent over its origin along a direction (3, n), in the frame of `base` [mm]."""

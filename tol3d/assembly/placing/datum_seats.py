@@ -10,7 +10,7 @@ from tol3d.assembly.model import Axis, Cone, Datum, DatumFrame, Part, Point, Slo
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual, nominally, total
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
-from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, dot, unit
+from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, dot, repeated, unit
 from tol3d.assembly.placing.seen_motions import Pattern, pattern
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
@@ -234,13 +234,18 @@ class PartFeatures:
         self._actual: dict[str, ActualFeature] = {}
         self._frames: dict[str, tuple[Pose, Codes]] = {}
 
-    def are_of(self, part: Part) -> bool:
-        """True if a part, perhaps at another pose, has these very features and datum frames."""
+    def are_of(self, part: Part, trials: int) -> bool:
+        """True if a part, perhaps at another pose, has these very features and datum frames, once or several times."""
         return (
-            len(part.features) == len(self._features)
+            trials % self._columns.shape[1] == 0
+            and len(part.features) == len(self._features)
             and all(own == self._features.get(own.name) for own in part.features)
             and all(own == other for own, other in zip(part.datum_frames, self._part.datum_frames, strict=True))
         )
+
+    def repeated(self, trials: int) -> "PartFeatures":
+        """Those of trials that follow each other several times; themselves where all are the same ones."""
+        return self if self._columns.shape[1] == trials else _RepeatedFeatures(self, trials)
 
     def feature(self, name: str) -> ActualFeature:
         """A feature."""
@@ -278,4 +283,24 @@ class PartFeatures:
                 shift = np.stack(np.broadcast_arrays(*total(seats.frame.shifted_by, 3, self._columns)))
                 displacement = Pose(displacement.turn, displacement.point(shift))
             self._frames[name] = displacement, codes
+        return self._frames[name]
+
+
+class _RepeatedFeatures(PartFeatures):
+    """Features of a part in trials that follow each other several times, found once."""
+
+    def __init__(self, once: PartFeatures, trials: int) -> None:
+        super().__init__(once._part, once._datum_seats, np.broadcast_to(0.0, (0, trials)), once._still)
+        self._once, self._trials = once, trials
+
+    def feature(self, name: str) -> ActualFeature:
+        if name not in self._actual:
+            found = self._once.feature(name)
+            self._actual[name] = found if found.feature.is_still else found.repeated(self._trials)
+        return self._actual[name]
+
+    def _found(self, name: str) -> tuple[Pose, Codes]:
+        if name not in self._frames:
+            displacement, codes = self._once._found(name)
+            self._frames[name] = displacement.repeated(self._trials), repeated(codes, self._trials)
         return self._frames[name]

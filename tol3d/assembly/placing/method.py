@@ -60,7 +60,12 @@ def answers(
 def planned_answers(
     plan: PlacingPlan, deviations: Array, names: Sequence[str], kept: dict[int, dict[str, Any]] | None = None
 ) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]]]:
-    """The same for a planned assembly; `kept`: by block, of the same trials in other poses, see World."""
+    """The same for a planned assembly.
+
+    Args:
+        plan, deviations, names: see `values`.
+        kept: by block, of the same trials in other poses, or of fewer that all these repeat in one block; see World.
+    """
     assembly = plan.assembly
     deviations = np.asarray(deviations, dtype=np.float64)
     found = {name: (np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)) for name in names}

@@ -108,13 +108,14 @@ def world_before(
     still: Mapping[str, dict[str, ActualFeature]] | None = None,
     kept: dict[str, Any] | None = None,
 ) -> World:
-    """Before the first move; with what is `kept` of these trials in other poses, see World."""
+    """Before the first move; with what is `kept` of these trials, or of fewer that they repeat, see World."""
     kept = {} if kept is None else kept
     own = {}
     for part in assembly.parts:
         known = kept.get(key := f"features of {part.name}")
-        if known is None or not known.are_of(part):
+        if known is None or not known.are_of(part, columns.shape[1]):
             known = PartFeatures(part, seats[part.name], columns, still[part.name] if still is not None else None)
-        own[part.name] = kept[key] = known
+        kept[key] = known
+        own[part.name] = known.repeated(columns.shape[1])
     bodies = {part.name: frozenset([part.name]) for part in assembly.parts}
     return World(assembly, columns, own, {}, bodies, kept=kept)

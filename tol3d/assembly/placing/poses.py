@@ -6,6 +6,7 @@ same bits alone and among thousands.
 """
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from tol3d.numerics.arrays import Array
 
 Codes = NDArray[np.int8]
+Number = TypeVar("Number", bound=np.generic)
 
 NO_LENGTH = 1e-150  # under it a squared length is 0 and has no direction
 
@@ -64,6 +66,12 @@ def product(left: Array, right: Array) -> Array:
     return np.asarray(
         left[:, 0, None] * right[None, 0] + left[:, 1, None] * right[None, 1] + left[:, 2, None] * right[None, 2]
     )
+
+
+def repeated(values: NDArray[Number], trials: int) -> NDArray[Number]:
+    """Values (..., n) of trials that follow each other several times (..., trials); (..., 1) of all of them stay."""
+    count = values.shape[-1]
+    return values if count in (1, trials) else np.tile(values, trials // count)
 
 
 def column(vector: Array) -> Array:
@@ -142,6 +150,17 @@ class Pose:
     def inverse(self) -> "Pose":
         """From the end to the start."""
         return Pose(np.swapaxes(self.turn, 0, 1), -rotated_back(self.turn, self.shift))
+
+    def turned_about_z(self, cos: Array, sin: Array) -> "Pose":
+        """This pose after a turn about its own z, by the cosine and the sine of its angle (n,)."""
+        x, y, z = np.swapaxes(self.turn, 0, 1)
+        turn = np.empty((3, 3, max(self.turn.shape[-1], len(cos))))
+        turn[:, 0], turn[:, 1], turn[:, 2] = x * cos + y * sin, y * cos - x * sin, z
+        return Pose(turn, self.shift)
+
+    def repeated(self, trials: int) -> "Pose":
+        """Of trials that follow each other several times."""
+        return Pose(repeated(self.turn, trials), repeated(self.shift, trials))
 
     def matrices(self, trials: int) -> Array:
         """4x4 poses (trials, 4, 4)."""

@@ -44,7 +44,8 @@ class World:
         loads: by move, the part of its force that each contact carries (contacts, n).
         slacks: of moves with play, by their names (n,) [mm].
         tightest: of moves with play, by their names, the pair that decides it (n,).
-        kept: found of these trials alike in every pose in which the assembly is read, by keys of those who keep it.
+        kept: found of these trials alike in every pose in which the assembly is read, by keys of those who keep it; or
+            of fewer trials, which these repeat one after the other with other turns of joints.
     """
 
     assembly: Assembly
