@@ -15,8 +15,7 @@ from tol3d.planetary.exact.flank_gaps import flank_gaps
 from tol3d.planetary.exact.shown import MovedSet, ShownSet, opened, shown_set, swung, turned
 from tol3d.planetary.model.deviated import Deviated
 from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.planetary.presenting.shown_gears import motion, motions
-from tol3d.report.body import World
+from tol3d.planetary.presenting.shown_gears import PlanetaryDisplay
 
 Array = NDArray[np.float64]
 
@@ -140,11 +139,11 @@ def both_teeth(own: PlanetarySet, mesh: int) -> int:
 
 
 def test_a_set_that_jams_or_cannot_open_says_so() -> None:
-    assert motions(reducer_3k()) == ("turn", "swing")
-    assert motions(flexible()) == ("opening", "turn", "swing")
+    assert PlanetaryDisplay("rigid", set_shown(reducer_3k(), ALIKE)).motions == ("turn", "swing")
+    assert PlanetaryDisplay("flexible", set_shown(flexible(), ALIKE)).motions == ("opening", "turn", "swing")
     jams = set_shown(reducer_3k(), thinned(-0.05, -0.05, -0.05))
     with pytest.raises(InputError, match="jams"):
-        motion(jams, World("set", ()), "turn", 3)
+        PlanetaryDisplay("tight", jams).motion("turn", 3)
     with pytest.raises(InputError, match="jams"):
         turned(jams, 3)
     with pytest.raises(InputError, match="does not open"):

@@ -20,6 +20,7 @@ from tol3d.planetary.model.deviated import Deviated
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at
 from tol3d.planetary.sections import set_sections
+from tol3d.planetary.summary_types import PlanetarySetSummary
 from tol3d.planetary.trials import SOLVERS
 from tol3d.reducers.deviations import Acts
 from tol3d.reducers.link import UNFOLLOWED, Actions, Lost, ReducerLink
@@ -118,8 +119,12 @@ class SetLink(ReducerLink):
 
     def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
         """Efficiencies, where the friction of its teeth is given; see StatedLink."""
-        found = set_sections(self.own, self.friction)
-        return {"planetary_sets": found[self.name]} if found else {}
+        return {"planetary_sets": self.summaries[self.name]} if self.summaries else {}
+
+    @property
+    def summaries(self) -> Mapping[str, PlanetarySetSummary]:
+        """Efficiencies by the set's name; empty without friction."""
+        return set_sections(self.own, self.friction)
 
     def problems(self, mean: LinkTrials) -> Iterator[tuple[KeyPath, str]]:
         """Meshes that overlap at the mean build, then load paths of several planets that do."""

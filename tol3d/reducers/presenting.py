@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from tol3d.gearing.presenting import GearPresenter
+from tol3d.gearing.presenting import DISPLAY, GearPresenter
+from tol3d.report.presenter import SYSTEM_CHECK
 
 if TYPE_CHECKING:
     from tol3d.gearing.links import LinkTrials, StatedLink
@@ -27,9 +28,9 @@ class ReducerPresenter(GearPresenter):
     Its modules are imported when they are needed: a table needs no picture, a picture no model.
 
     Args:
-        tables: module of `check_blocks` and `link_blocks`, the data of a scene's reducer alone and in a train.
+        tables: module of `blocks`, the data of a scene's reducer, of its system or its link and their contributors.
         results: module of `link_sections`, the tables of a run besides those of its measures.
-        builds: module of `display`, `replayed_display` and `shown_link`, a build alone, replayed and in a train.
+        builds: module of `display_of` and `shown_link`, a build alone and in a train.
     """
 
     tables: str
@@ -38,19 +39,22 @@ class ReducerPresenter(GearPresenter):
 
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """Data of the reducer, then the items of any system."""
-        return import_module(self.tables).check_blocks(simulation)  # type: ignore[no-any-return]
+        system = simulation.system
+        blocks = import_module(self.tables).blocks(system, system.contributors)
+        return (*blocks, *import_module(SYSTEM_CHECK).system_blocks(simulation))
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its parts in contact again."""
-        return import_module(self.builds).display(run, which, magnify=magnify)  # type: ignore[no-any-return]
+        label, seen, notes = import_module(DISPLAY).magnified_of(run, which, magnify)
+        return import_module(self.builds).display_of(label, seen.build, notes)  # type: ignore[no-any-return]
 
     def replayed(self, replay: "Replay", label: str) -> "Display":
         """A trial that was replayed."""
-        return import_module(self.builds).replayed_display(replay, label)  # type: ignore[no-any-return]
+        return import_module(self.builds).display_of(label, replay.build, ())  # type: ignore[no-any-return]
 
     def link_blocks(self, link: "StatedLink", contributors: "Sequence[Contributor]") -> "Sequence[PageItem]":
         """Data of a reducer in a train."""
-        return import_module(self.tables).link_blocks(link, contributors)  # type: ignore[no-any-return]
+        return import_module(self.tables).blocks(link, contributors)  # type: ignore[no-any-return]
 
     def link_sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
         """Its tables in a run of a train."""

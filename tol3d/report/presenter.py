@@ -35,12 +35,14 @@ class View:
 
     Args:
         panels: the first one large, on the left, the others one below the other on its right; one alone fills the
-            window. Without any the window shows the first world, its bodies named.
+            window. Without any the window shows a world, its bodies named.
         notes: on all that the window does not show.
+        world: shown without panels; None: the first of the display.
     """
 
     panels: tuple[Panel, ...] = ()
     notes: tuple[str, ...] = ()
+    world: "World | None" = None
 
 
 @dataclass(frozen=True)

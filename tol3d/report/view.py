@@ -11,6 +11,7 @@ from typing import Final
 import pyvista as pv
 
 from tol3d.errors import InputError, unwritable
+from tol3d.report.body import World
 from tol3d.report.drawn_solids import add_title
 from tol3d.report.presenter import Display, Panel, Which, presenter_of, require_bodies
 from tol3d.report.whole import draw_whole
@@ -71,7 +72,7 @@ def view_build(display: Display, *, screenshot: Path | None = None, close_up: st
     if not view.panels:
         require_bodies(display)
     choose_window(needs_display=screenshot is None)
-    plotter = plot(view.panels or (partial(_first_world, display),), off_screen=screenshot is not None)
+    plotter = plot(view.panels or (partial(_whole, display, view.world),), off_screen=screenshot is not None)
     try:
         if screenshot is None:
             plotter.show(title=f"tol3d · {display.label}")
@@ -89,8 +90,8 @@ def _refuse_other(screenshot: Path | None) -> None:
         raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
 
 
-def _first_world(display: Display, plotter: pv.Plotter, width_by_height: float) -> None:
-    draw_whole(plotter, display.worlds[0], width_by_height)
+def _whole(display: Display, world: World | None, plotter: pv.Plotter, width_by_height: float) -> None:
+    draw_whole(plotter, world or display.worlds[0], width_by_height)
     add_title(plotter, display.label, TITLE_SIZE)
 
 

@@ -1,7 +1,7 @@
 """Tables of a scene's RV reducer."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Final
 
@@ -11,36 +11,21 @@ from tol3d.cycloid.reducer.formula import stages_by_formula
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.rv_link import RVLink
 from tol3d.cycloid.system import RVSystem
-from tol3d.gearing.links import StatedLink
-from tol3d.reducers.deviations import Acts
 from tol3d.reducers.shown import gear_sizes
 from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, Table, line
-from tol3d.report.system_check import system_blocks
 from tol3d.runs.summary.shows import Computed, Shows
-from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
 
 ARC_SECONDS: Final = math.degrees(1.0) * 3.6  # that 1 um turns what is 1 mm away
 
 
-def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
-    """Ratio, profile, levers and transmission error by formula, then the items of any system."""
-    system = simulation.system
-    assert isinstance(system, RVSystem)
-    return (*_nominal(system.own, system.acts, system.contributors), *system_blocks(simulation))
-
-
-def link_blocks(link: StatedLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
-    """The same of a reducer in a train, without the items of any system."""
-    assert isinstance(link, RVLink)
-    return _nominal(link.own, link.acts, contributors)
-
-
-def _nominal(own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]) -> Sequence[PageItem]:
-    formulas = stage_blocks(stages_by_formula(own, acts, contributors))
+def blocks(reducer: RVSystem | RVLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
+    """Ratio, profile, levers and transmission error by formula."""
+    own, acts = reducer.own, reducer.acts
     first = own.first
     gears = {} if first is None else {name: first.gear(name) for name in (first.sun, first.planet)}
+    formulas = stage_blocks(stages_by_formula(own, acts, contributors))
     return (*map(line, _words(own)), *gear_sizes(gears, acts, contributors), _levers(own), *formulas)
 
 

@@ -7,8 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from importlib import import_module
-from typing import Any, Final, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -25,8 +24,6 @@ from tol3d.report.presenter import View, presenter_at
 from tol3d.runs.summary.run import RunSummary
 from tol3d.system.contributor import Contributor
 from tol3d.system.trials import Trials
-
-TITLE_SIZE: Final = 13
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,11 +172,7 @@ class ShownTrain:
 
     def view(self, close_up: str | None) -> View:
         """The whole train with its links; with a mesh named, that mesh close up as in any train."""
-        return View((self._panel,)) if close_up is None else self.gears.view(close_up)
-
-    def _panel(self, plotter: Any, width_by_height: float) -> None:
-        import_module("tol3d.report.whole").draw_whole(plotter, self._seen[0], width_by_height)
-        import_module("tol3d.report.drawn_solids").add_title(plotter, self.label, TITLE_SIZE)
+        return View(world=self._seen[0]) if close_up is None else self.gears.view(close_up)
 
 
 def _in_pictures(own: ShownLink) -> tuple[Body, ...]:

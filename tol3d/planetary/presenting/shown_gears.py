@@ -3,8 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -12,7 +11,6 @@ from tol3d.errors import InputError
 from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body, plain_body
-from tol3d.gearing.shown.display import magnified_of
 from tol3d.gears import LEFT, SpurGear
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import upright_pose
@@ -20,14 +18,11 @@ from tol3d.planetary.exact.flank_gaps import flank_gaps
 from tol3d.planetary.exact.shown import MovedSet, ShownSet, opened, shaft_turn, swung, turned
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.set_link import SetLink
-from tol3d.reducers.shown import from_front, world_from_middle
+from tol3d.reducers.shown import SWING, TURN, Moves, ReducerDisplay, from_front, world_from_middle
 from tol3d.report.body import Body, World
-from tol3d.report.motion import FRONT, Frame, Look, Mark, Motion, Shot
-from tol3d.report.presenter import View, Which
-from tol3d.runs.run import Run
+from tol3d.report.motion import FRONT, Frame, Look, Mark, Shot
 from tol3d.solids import PosedBody
 from tol3d.solids.posed_gear import ArmBody
-from tol3d.study.replaying import Replay
 
 PIN: Final = 0.7  # of the smallest bore of a planet
 BELOW: Final = 0.75  # of a pin's diameter, from the lowest face to the axis of an arm
@@ -62,49 +57,52 @@ def arm_pose(pin: Array, level: float) -> Array:
     return upright_pose(math.atan2(pin[1], pin[0]), level=level)
 
 
-TURN, SWING, OPENING = "turn", "swing", "opening"
-FRAMES: Final[Mapping[str, int]] = {TURN: 72, SWING: 16, OPENING: 24}
+OPENING: Final = "opening"
 AHEAD, BEHIND = "touches ahead, counter-clockwise", "touches behind, clockwise"
-COLOURS: Final = {AHEAD: "#B0127B", BEHIND: "#101060"}
 TOUCHING: Final = 1e-6  # mm; contacts are found to some 1e-9
 TEETH_HIGH: Final = 2.4  # modules from the middle of the teeth in mesh to the upper edge
 MOST_CLOSE_UPS: Final = 3
+CENTRALS, FORWARD, BACKWARD, PLANETS = "#E69F00", "#4682B4", "#009E73", "#4682B4"
 
 
-def motions(own: PlanetarySet) -> tuple[str, ...]:
-    """Names of the motions of a set."""
-    return (OPENING, TURN, SWING) if own.springs else (TURN, SWING)
+@dataclass(frozen=True, eq=False)
+class PlanetaryDisplay(ReducerDisplay):
+    """A build of a set: every gear, and the carrier where its pins fit in bores."""
 
+    words: ClassVar[str] = "a planetary set"
+    colours: ClassVar[Mapping[str, str]] = {AHEAD: "#B0127B", BEHIND: "#101060"}
 
-def motion(shown: ShownSet, world: World, name: str, frames: int | None) -> Motion:
-    """One of them.
+    shown: ShownSet
 
-    Args:
-        frames: their number; None: FRAMES.
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """See ReducerDisplay."""
+        return (*bodies_of(self.shown), *arms_of(self.shown))
 
-    Raises:
-        InputError: the set jams, or its carrier does not open.
-    """
-    if shown.status:
-        raise InputError("the set jams, so that nothing of it moves; choose another trial")
-    states = {TURN: turned, SWING: swung, OPENING: opened}[name](shown, frames or FRAMES[name])
-    pictures = _steps(shown, world) if name == TURN else _close_ups(shown, world)
-    return Motion(world, tuple(_frames(shown, world, states, name)), tuple(pictures), COLOURS, back=name != TURN)
+    @property
+    def moves(self) -> Moves:
+        """See ReducerDisplay; a flexible carrier opens."""
+        opening = {OPENING: (opened, 24)} if self.shown.own.springs else {}
+        return {**opening, TURN: (turned, 72), SWING: (swung, 16)}
 
+    def frames(self, states: Sequence[MovedSet], name: str) -> Iterator[Frame]:
+        """See ReducerDisplay."""
+        own = self.shown.own
+        levels = {body.name: float(body.world_from_part[2, 3]) for body in self.seen.bodies}
+        for state in states:
+            poses = {gear.name: gear.world_from_gear for gear in state.gears}
+            arms = ((arm_name(own, planet), pin) for planet, pin in enumerate(state.pins))
+            poses |= {name: arm_pose(pin, levels[name]) for name, pin in arms if name in levels}
+            marks = tuple(
+                Mark(AHEAD if gap.flank == LEFT else BEHIND, gap.point, gap.bodies)
+                for gap in flank_gaps(own, state.gears)
+                if gap.value < TOUCHING
+            )
+            yield Frame(_caption(own, state, states, name), poses, marks)
 
-def _frames(shown: ShownSet, world: World, states: Sequence[MovedSet], name: str) -> Iterator[Frame]:
-    own = shown.own
-    levels = {body.name: float(body.world_from_part[2, 3]) for body in world.bodies}
-    for state in states:
-        poses = {gear.name: gear.world_from_gear for gear in state.gears}
-        arms = ((arm_name(own, planet), pin) for planet, pin in enumerate(state.pins))
-        poses |= {name: arm_pose(pin, levels[name]) for name, pin in arms if name in levels}
-        marks = tuple(
-            Mark(AHEAD if gap.flank == LEFT else BEHIND, gap.point, gap.bodies)
-            for gap in flank_gaps(own, state.gears)
-            if gap.value < TOUCHING
-        )
-        yield Frame(_caption(own, state, states, name), poses, marks)
+    def shots(self, states: Sequence[MovedSet], name: str) -> Iterator[Shot]:
+        """See ReducerDisplay."""
+        return _steps(self.shown, self.seen) if name == TURN else _close_ups(self.shown, self.seen)
 
 
 def _caption(own: PlanetarySet, state: MovedSet, states: Sequence[MovedSet], name: str) -> str:
@@ -154,42 +152,6 @@ def _close_ups(shown: ShownSet, world: World) -> Iterator[Shot]:
         yield Shot(f"{both[0].bodies[0]} and {both[0].bodies[1]}", (look,), both[0].bodies)
 
 
-CENTRALS, FORWARD, BACKWARD, PLANETS = "#E69F00", "#4682B4", "#009E73", "#4682B4"
-
-
-@dataclass(frozen=True, eq=False)
-class PlanetaryDisplay:
-    """A build of a set; see `tol3d.report.presenter.Display`."""
-
-    label: str
-    shown: ShownSet
-    notes: tuple[str, ...] = ()
-
-    @cached_property
-    def worlds(self) -> tuple[World, ...]:
-        """One world with every gear, and the carrier where its pins fit in bores."""
-        return (World(self.shown.own.name, (*bodies_of(self.shown), *arms_of(self.shown))),)
-
-    @property
-    def motions(self) -> tuple[str, ...]:
-        """See `tol3d.report.motion.Movable`."""
-        return motions(self.shown.own)
-
-    def motion(self, name: str, frames: int | None) -> Motion:
-        """See `tol3d.report.motion.Movable`."""
-        return motion(self.shown, self.worlds[0], name, frames)
-
-    def view(self, close_up: str | None) -> View:
-        """All gears.
-
-        Raises:
-            InputError: a close-up was asked for.
-        """
-        if close_up is not None:
-            raise InputError(f"--mesh: nothing of a planetary set is shown close up, not {close_up[:80]!r}")
-        return View()
-
-
 def bodies_of(shown: ShownSet) -> tuple[Body, ...]:
     """Every gear of a set, central gears and planets in their colours, planets by how springs push them."""
     own, colours = shown.own, [CENTRALS] * len(shown.own.meshes)
@@ -208,23 +170,13 @@ def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: Array) -> 
     return ShownLink(bodies_of(replace(shown, gears=gears)), note)
 
 
-def display(run: Run, which: Which, *, magnify: float) -> PlanetaryDisplay:
-    """A build of a run.
+def display_of(label: str, shown: ShownSet, notes: tuple[str, ...]) -> PlanetaryDisplay:
+    """A build under a label, with notes if it is magnified.
 
     Raises:
-        InputError: no such build, or a magnification with which it jams.
+        InputError: a magnification with which it jams.
     """
-    label, seen, notes = magnified_of(run, which, magnify)
-    if not notes:
-        return replayed_display(seen, label)
-    if seen.build.status:
-        plain = label.removesuffix(f"-x{magnify:g}")
-        raise InputError(f"magnify: {plain} jams with its deviations magnified {magnify:g} times; take less")
-    return PlanetaryDisplay(label, seen.build, notes)
-
-
-def replayed_display(seen: Replay, label: str) -> PlanetaryDisplay:
-    """A build that was replayed, under a label."""
-    shown: ShownSet = seen.build
-    note = () if not shown.status else (f"{label} jams; shown where no backlash would have its gears",)
-    return PlanetaryDisplay(label, shown, note)
+    if shown.status and notes:
+        raise InputError(f"magnify: {label.rpartition('-x')[0]} jams with its {notes[0]}; take less")
+    jams = (f"{label} jams; shown where no backlash would have its gears",) if shown.status else ()
+    return PlanetaryDisplay(label, shown, (*notes, *jams))
