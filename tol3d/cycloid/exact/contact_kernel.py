@@ -1,7 +1,7 @@
 """First contact of cycloid discs among their pins, compiled over trials, crank angles and pins.
 
 A first-order screen finds every working pin's turn from its nominal foot: gap / lever. It errs by the curvature of the
-path over the pin's distance from that foot, by the square of the turn, and by errors times the turn; the sum of these
+path over the pin's way along it from that foot, by the square of the turn, and by errors times the turn; the sum of these
 bounds says which pins may be first, and Newton's method is run on these only. A disc that leans touches with one of its
 faces, or between them where the gap is least inside.
 """
@@ -19,6 +19,7 @@ from tol3d.cycloid.exact.pin_contact import (
     placed,
     standing_gap,
     touched,
+    write_facing,
 )
 from tol3d.numerics.compiled import kernel, part
 
@@ -67,37 +68,58 @@ def curvature_within(shape: Any, speed: float, right: float, cos_phase: float, f
 
 
 @part
-def bound(shape: Any, reach: float, most: float, own: float, bent: float, far: float) -> float:
-    """Bound on the change of a gap by curvature and squares of turns [mm]; inf where the path bends too much."""
-    moved = (1.0 + abs(shape.rolling)) * most + abs(own)
-    curved = 0.5 * bent * far / (1.0 - bent) if bent < 0.5 else np.inf
-    found: float = curved + 0.5 * reach * moved**2
+def bound(curvature: float, along: float, far: float) -> float:
+    """Bound on the change of a gap by the bend of the path [mm]; inf where it bends too much.
+
+    Args:
+        curvature: largest within twice the distance along the path [1/mm].
+        along, far: largest distance of the pin from its nominal place, along the path and in any direction [mm].
+    """
+    bent = curvature * far
+    found: float = 0.5 * curvature * along * along / (1.0 - bent) if bent < 0.5 else np.inf
     return found
 
 
 @part
+def working_arc(shape: Any) -> tuple[float, float]:
+    """Nearest and farthest phase of a working pin, in turns: where sin t is the window's share of the speed there.
+
+    1 - c^2 = W^2 (1 + K^2 - 2 K c) with c = cos t, which is at most half a turn; none works where it has no root.
+    """
+    nominal, square = shape.eccentricity * shape.pins / shape.pin_circle, shape.window * shape.window
+    root = np.sqrt(max(square * square * nominal * nominal - square * (1.0 + nominal * nominal) + 1.0, 0.0))
+    middle = square * nominal
+    return np.arccos(min(middle + root, 1.0)) / TURN, np.arccos(max(middle - root, -1.0)) / TURN
+
+
+@part
 def screened(
-    shape: Any, linkage: Any, throw: float, drifting: float, flanks: Any, pins: Any, around: Any, crank: Any,
-    sense: float, disc: int, lean: Any, firsts: Any, slacks: Any,
-) -> None:  # fmt: skip
-    """Write the turn of each pin of a disc in a sense to first order, and its error at most; inf where it is idle.
+    shape: Any, linkage: Any, facing: Any, drifting: float, flanks: Any, pins: Any, around: Any, crank: Any,
+    sense: float, arc: Any, disc: int, lean: Any, screen: Any, number: int,
+) -> int:  # fmt: skip
+    """Write the turn of each working pin of a disc in a sense to first order, and its error at most.
 
     Args:
+        facing: of the disc, see pin_contact.write_facing.
         around: cosine and sine of the pins' azimuths (pins, 2).
         crank: of pin_contact.crank_at.
         sense: +1 where the disc turns counter-clockwise, -1 back; turns are counted in it.
+        arc: see working_arc.
         lean: see touched, with half the disc's width for the height.
-        firsts, slacks: of all discs' pins (discs pins,); written. A slack of inf is that of a pin whose bound is none.
+        screen: places, first turns, slacks, and levers with all that turns with them of working pins (discs pins,);
+            written. A slack of inf is that of a pin whose bound is none.
+        number: of working pins of the discs before.
+
+    Returns:
+        Number of working pins of these discs.
     """
     lobe_pitch, lobe_profile = flanks
     places, radii = pins
-    count = around.shape[0]
-    lead = (crank[0] + throw) / shape.lobes
-    clock = -throw / shape.lobes
+    working, firsts, slacks, arms = screen
     cos_psi, sin_psi, centre_x, centre_y = placed(linkage, crank[1], crank[2], crank[3], crank[4])
-    cos_clock, sin_clock = np.cos(clock), np.sin(clock)
+    lead, cos_lead, sin_lead, e, f = facing[0], facing[1], facing[2], facing[3], facing[4]
+    cos_clock, sin_clock = facing[5], facing[6]
     cos_psi, sin_psi = cos_psi * cos_clock - sin_psi * sin_clock, sin_psi * cos_clock + cos_psi * sin_clock
-    cos_lead, sin_lead, e, f = np.cos(lead), np.sin(lead), np.cos(shape.pins * lead), np.sin(shape.pins * lead)
     shortening = shape.eccentricity * shape.pins / shape.ground_circle
     nominal = shape.eccentricity * shape.pins / shape.pin_circle
     pitch_radius = shape.eccentricity * shape.lobes
@@ -105,19 +127,25 @@ def screened(
     steep = tau_x * tau_x + tau_y * tau_y
     aside = np.sqrt(steep) * lean[2]
     reach = shape.ground_circle + shape.eccentricity * (1.0 + abs(shape.rolling)) + 1.0
-    for j in range(count):
+    within, giving = max(shape.deflection, 0.0), 1.0 + shape.rolling / shape.lobes
+    swung = (shape.rolling - 1.0) * shape.eccentricity
+    count = around.shape[0]
+    at = lead * shape.lobes / TURN + (arc[0] if sense > 0.0 else -arc[1])
+    begun = int(np.floor((at - np.floor(at)) * count))
+    for k in range(min(int((arc[1] - arc[0]) * count) + 3, count)):
+        j = begun + k if begun + k < count else begun + k - count
         c = around[j, 0] * cos_lead - around[j, 1] * sin_lead
         s = around[j, 1] * cos_lead + around[j, 0] * sin_lead
         right = f * c - e * s
         cos_phase = e * c + f * s
         least = shape.window * shape.window * (1.0 + nominal * (nominal - 2.0 * cos_phase))
         if not (-sense * right > 0.0 and right * right > least):
-            firsts[disc * count + j] = np.inf
             continue
         n_x, n_y = c - shortening * e, s - shortening * f
         speed = np.sqrt(n_x * n_x + n_y * n_y)
-        lever = pitch_radius * right / speed
-        lobe = lobe_at(TURN * j / shape.pins + lead, shape.lobes)
+        arm = pitch_radius * abs(right) * giving  # times the speed
+        per_arm = 1.0 / arm
+        lobe = lobe_at(j * (TURN / shape.pins) + lead, shape.lobes)
         own = lobe_turn(shape, lobe_pitch, lobe, right)
         x, y = places[j, 0] - centre_x, places[j, 1] - centre_y
         x, y = cos_psi * x + sin_psi * y, cos_psi * y - sin_psi * x
@@ -125,22 +153,27 @@ def screened(
         x = x - shape.ground_circle * c + shape.eccentricity * e
         y = y - shape.ground_circle * s + shape.eccentricity * f
         off = radii[j] - shape.ground_radius + lobe_profile[lobe]
-        arm = abs(lever) * (1.0 + shape.rolling / shape.lobes)
-        first = ((n_x * x + n_y * y - abs(n_x * tau_x + n_y * tau_y) * lean[2]) / speed - off) / arm
-        most = MORE * (abs(first) + max(shape.deflection, 0.0) / arm) + LEAST_TURN
+        first = (n_x * x + n_y * y - abs(n_x * tau_x + n_y * tau_y) * lean[2] - off * speed) * per_arm
+        per_arm *= speed
+        most = MORE * (abs(first) + within * per_arm) + LEAST_TURN
         away = np.sqrt(x * x + y * y) + aside
-        far = away + reach * (most + abs(own))
-        bent = curvature_within(shape, speed, right, cos_phase, far) * far
-        error = bound(shape, reach, most, own, bent, far)
-        error += most * (away + drifting) + reach * steep + abs(own) * aside
-        slack = error / arm
-        firsts[disc * count + j] = first
-        slacks[disc * count + j] = slack if slack <= most - abs(first) - max(shape.deflection, 0.0) / arm else np.inf
+        moved = (1.0 + abs(shape.rolling)) * most + abs(own)
+        rest = 0.5 * reach * moved * moved + most * (away + drifting) + reach * steep + abs(own) * aside
+        turn_x = shape.ground_circle * s + swung * f
+        turn_y = -shape.ground_circle * c - swung * e
+        foot = n_x * (y + sense * first * turn_y) - n_y * (x + sense * first * turn_x)
+        along = abs(foot) / speed + aside + reach * (most - abs(first)) + rest
+        error = bound(curvature_within(shape, speed, right, cos_phase, along), along, away + reach * moved) + rest
+        slack = error * per_arm
+        working[number], firsts[number], arms[number] = disc * count + j, first, arm / speed
+        slacks[number] = slack if slack <= most - abs(first) - within * per_arm else np.inf
+        number += 1
+    return number
 
 
 @part
 def exact(
-    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, crank: Any, place: int, extra: float,
+    shape: Any, linkage: Any, facing: Any, flanks: Any, pins: Any, around: Any, crank: Any, place: int, extra: float,
     leans: Any, sense: float, enough: float,
 ) -> tuple[float, bool]:  # fmt: skip
     """The turn at which a pin touches; its place counts all discs' pins. Pins that are thicker touch earlier.
@@ -150,27 +183,27 @@ def exact(
     lobe_pitch, lobe_profile = flanks
     places, radii = pins
     disc, j = place // around.shape[0], place % around.shape[0]
-    u = TURN * j / shape.pins + (crank[0] + throws[disc]) / shape.lobes
-    clock = -throws[disc] / shape.lobes
-    pin = (places[j, 0], places[j, 1], radii[j])
+    meets = facing[disc]
+    u = j * (TURN / shape.pins) + meets[0]
+    pin = (places[j, 0], places[j, 1], radii[j], around[j, 0], around[j, 1])
     own = (lobe_pitch[disc], lobe_profile[disc])
     x, y, high = leans[disc, 0], leans[disc, 1], leans[disc, 2]
     low = -high
     flat = x * x + y * y == 0.0 or high == 0.0
     most = enough if flat else np.inf
-    turn, above, found = touched(shape, linkage[disc], clock, own, pin, crank, u, extra, (x, y, high), sense, most)
+    turn, above, found = touched(shape, linkage[disc], meets, own, pin, crank, u, extra, (x, y, high), sense, most)
     if flat or not found:
         return turn, found
-    other, below, found = touched(shape, linkage[disc], clock, own, pin, crank, u, extra, (x, y, low), sense, most)
+    other, below, found = touched(shape, linkage[disc], meets, own, pin, crank, u, extra, (x, y, low), sense, most)
     # a pin on a right flank is cleared by a larger turn, on a left one by a smaller one
-    right = np.sin(crank[0] + throws[disc] - TURN * j / shape.pins) > 0.0
+    right = np.sin(meets[0] * shape.lobes - TURN * j / shape.pins) > 0.0
     turn = max(turn, other) if right else min(turn, other)
     for _ in range(MOST_CUTS):
         if not (found and below < 0.0 < above):
             break
         height = (low * above - high * below) / (above - below)
         other, slope, found = touched(
-            shape, linkage[disc], clock, own, pin, crank, u, extra, (x, y, height), sense, most
+            shape, linkage[disc], meets, own, pin, crank, u, extra, (x, y, height), sense, most
         )
         turn = max(turn, other) if right else min(turn, other)
         if abs(slope) * (high - low) < FLAT:
@@ -204,71 +237,66 @@ def clear(
 
 @part
 def first_of(
-    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, crank: Any, sense: float, screen: Any,
-    leans: Any,
+    shape: Any, linkage: Any, throws: Any, facing: Any, flanks: Any, pins: Any, around: Any, crank: Any, sense: float,
+    screen: Any, number: int, leans: Any,
 ) -> tuple[float, int]:  # fmt: skip
     """The first contact in a sense: the carrier's turn and the pin's place; NaN where there is none, or none is known.
 
     Pins of which Newton's method finds no turn are in the way unless they are clear where the others stop the discs.
     """
-    firsts, slacks = screen
+    working, firsts, slacks, _ = screen
     best = np.inf
     begun = NO_PIN
-    for place in range(firsts.shape[0]):
-        if firsts[place] < best:
-            best, begun = firsts[place], place
+    for k in range(number):
+        if firsts[k] < best:
+            best, begun = firsts[k], k
     if begun == NO_PIN:
         return np.nan, NO_PIN
-    turn, found = exact(shape, linkage, throws, flanks, pins, around, crank, begun, 0.0, leans, sense, np.inf)
+    turn, found = exact(shape, linkage, facing, flanks, pins, around, crank, working[begun], 0.0, leans, sense, np.inf)
     at, missed = begun, 0
     if not found:
         turn, at, missed = sense * np.inf, NO_PIN, 1
-    for place in range(firsts.shape[0]):
-        if firsts[place] < np.inf and place != begun and firsts[place] - slacks[place] < sense * turn:
+    for k in range(number):
+        if k != begun and firsts[k] - slacks[k] < sense * turn:
             other, found = exact(
-                shape, linkage, throws, flanks, pins, around, crank, place, 0.0, leans, sense, sense * turn
+                shape, linkage, facing, flanks, pins, around, crank, working[k], 0.0, leans, sense, sense * turn
             )  # fmt: skip
             if not found:
                 missed += 1
             elif sense * other < sense * turn:
-                turn, at = other, place
+                turn, at = other, k
     if at == NO_PIN:
         return np.nan, NO_PIN
     if missed > 0:
-        for place in range(firsts.shape[0]):
-            if place == at or not (firsts[place] < np.inf and firsts[place] - slacks[place] < sense * turn):
+        for k in range(number):
+            if k == at or not firsts[k] - slacks[k] < sense * turn:
                 continue
-            _, found = exact(shape, linkage, throws, flanks, pins, around, crank, place, 0.0, leans, sense, np.inf)
+            _, found = exact(
+                shape, linkage, facing, flanks, pins, around, crank, working[k], 0.0, leans, sense, np.inf
+            )  # fmt: skip
             if not found and not (
-                firsts[place] > sense * turn
-                and clear(shape, linkage, throws, flanks, pins, around, crank, place, turn, leans)
+                firsts[k] > sense * turn
+                and clear(shape, linkage, throws, flanks, pins, around, crank, working[k], turn, leans)
             ):
                 return np.nan, NO_PIN
-    return turn, at
+    return turn, working[at]
 
 
 @part
 def near(
-    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, crank: Any, sense: float, screen: Any,
-    turn: float, leans: Any,
+    shape: Any, linkage: Any, facing: Any, flanks: Any, pins: Any, around: Any, crank: Any, sense: float, screen: Any,
+    number: int, turn: float, leans: Any,
 ) -> int:  # fmt: skip
     """Number of working pins with a gap of at most shape.deflection at a turn."""
-    firsts, slacks = screen
+    working, firsts, slacks, arms = screen
     count = 0
-    lobes = shape.lobes
-    for place in range(firsts.shape[0]):
-        if not firsts[place] < np.inf:
-            continue
-        phase = TURN * (place % around.shape[0]) / shape.pins - crank[0] - throws[place // around.shape[0]]
-        shortening = shape.eccentricity * shape.pins / shape.ground_circle
-        speed = np.sqrt(1.0 + shortening * (shortening - 2.0 * np.cos(phase)))
-        arm = shape.eccentricity * lobes * abs(np.sin(phase)) / speed * (1.0 + shape.rolling / lobes)
-        room = sense * turn - firsts[place] + shape.deflection / arm
-        if room > slacks[place]:
+    for k in range(number):
+        room = sense * turn - firsts[k] + shape.deflection / arms[k]
+        if room > slacks[k]:
             count += 1
-        elif room >= -slacks[place]:
+        elif room >= -slacks[k]:
             other, found = exact(
-                shape, linkage, throws, flanks, pins, around, crank, place, shape.deflection, leans, sense, np.inf
+                shape, linkage, facing, flanks, pins, around, crank, working[k], shape.deflection, leans, sense, np.inf
             )  # fmt: skip
             if found and sense * other <= sense * turn:
                 count += 1
@@ -300,8 +328,14 @@ def first_contacts(
         counts: working pins within shape.deflection of contact; written, where that is not below 0.
     """
     discs, count = throws.shape[0], around.shape[0]
-    screen = (np.empty(discs * count), np.empty(discs * count))
-    drifting = np.empty(discs)
+    screen = (
+        np.empty(discs * count, np.int64), np.empty(discs * count), np.empty(discs * count), np.empty(discs * count)
+    )  # fmt: skip
+    drifting, facing = np.empty(discs), np.empty((discs, 9))
+    for disc in range(discs):
+        facing[disc, 5], facing[disc, 6] = np.cos(throws[disc] / shape.lobes), -np.sin(throws[disc] / shape.lobes)
+        facing[disc, 7], facing[disc, 8] = np.cos(throws[disc]), np.sin(throws[disc])
+    arc = working_arc(shape)
     for i in range(phis.shape[0]):
         pins = (places[i], radii[i])
         flanks = (lobe_pitch[i], lobe_profile[i])
@@ -309,15 +343,18 @@ def first_contacts(
             drifting[disc] = drift(shape, linkage[i, disc], throws[disc])
         for p in range(phis.shape[1]):
             crank = crank_at(shape, phis[i, p])
+            for disc in range(discs):
+                write_facing(shape, throws[disc], crank, facing[disc])
             for s in range(senses.shape[0]):
+                number = 0
                 for disc in range(discs):
                     own = (lobe_pitch[i, disc], lobe_profile[i, disc])
-                    screened(
-                        shape, linkage[i, disc], throws[disc], drifting[disc], own, pins, around, crank,
-                        senses[s], disc, leans[i, disc], screen[0], screen[1],
+                    number = screened(
+                        shape, linkage[i, disc], facing[disc], drifting[disc], own, pins, around, crank,
+                        senses[s], arc, disc, leans[i, disc], screen, number,
                     )  # fmt: skip
                 turn, place = first_of(
-                    shape, linkage[i], throws, flanks, pins, around, crank, senses[s], screen, leans[i]
+                    shape, linkage[i], throws, facing, flanks, pins, around, crank, senses[s], screen, number, leans[i]
                 )  # fmt: skip
                 turns[i, p, s] = turn
                 at[i, p, s] = place
@@ -325,6 +362,6 @@ def first_contacts(
                     counts[i, p, s] = 0
                     if place != NO_PIN:
                         counts[i, p, s] = near(
-                            shape, linkage[i], throws, flanks, pins, around, crank, senses[s], screen, turn,
+                            shape, linkage[i], facing, flanks, pins, around, crank, senses[s], screen, number, turn,
                             leans[i],
                         )  # fmt: skip

@@ -24,8 +24,9 @@ from tol3d.numerics.compiled import part
 from tol3d.numerics.small_angles import turned_by
 
 MOST_STEPS: Final = 30  # three are needed where errors are some 20 um
-TURN_XTOL: Final = 1e-12  # rad; the next step is a thousandth of it
-FOOT_XTOL: Final = 1e-9  # rad; gaps change by the square of it
+TURN_XTOL: Final = 1e-11  # rad; the next step is a thousandth of it
+FOOT_XTOL: Final = 1e-9  # rad, of a foot alone; gaps change by the square of it
+LAST_FOOT_XTOL: Final = 1e-8  # rad, of a foot that is found with a turn: the next step is a thousandth of it
 SETTLED: Final = 0.01  # of the step before; Newton's method then errs by less than its last step
 LONGEST_STEP: Final = 0.05  # of a lobe pitch, by which the foot moves
 TURN: Final = 2.0 * np.pi
@@ -79,8 +80,8 @@ def placed(linkage: Any, cos_phi: float, sin_phi: float, cos_chi: float, sin_chi
 @part
 def lobe_at(u: float, lobes: float) -> int:
     """The lobe on which a parameter lies, 0 to lobes - 1."""
-    turns = u * lobes / TURN
-    lobe = int(np.floor(turns - lobes * np.floor(turns / lobes)))
+    turns = u * (lobes / TURN)
+    lobe = int(np.floor(turns - lobes * np.floor(turns * (1.0 / lobes))))
     return lobe if lobe < int(lobes) else 0
 
 
@@ -88,7 +89,7 @@ def lobe_at(u: float, lobes: float) -> int:
 def lobe_turn(shape: Any, lobe_pitch: Any, lobe: int, right: float) -> float:
     """Turn of a flank about the disc's axis [rad]: its lobe's pitch error, and the modification."""
     turned: float = shape.rotation if right > 0.0 else -shape.rotation
-    found: float = lobe_pitch[lobe] * shape.pins / (shape.lobes * shape.pin_circle) + turned
+    found: float = lobe_pitch[lobe] * (shape.pins / (shape.lobes * shape.pin_circle)) + turned
     return found
 
 
@@ -97,6 +98,20 @@ def crank_at(shape: Any, phi: float) -> tuple[float, float, float, float, float]
     """A crank angle, and cosine and sine of it and of the nominal turn of the carrier."""
     chi = -phi / shape.lobes
     return phi, np.cos(phi), np.sin(phi), np.cos(chi), np.sin(chi)
+
+
+@part
+def write_facing(shape: Any, throw: float, crank: Any, facing: Any) -> None:
+    """Write how a disc's profile faces the pins at a crank angle; `facing` has 9 numbers.
+
+    They are the parameter of its foot at the first pin, cosine and sine of it, of as many times it as there are pins,
+    and, which are given, of the profile's turn against its crank holes, and of the throw's direction.
+    """
+    facing[0] = (crank[0] + throw) / shape.lobes
+    c, s = crank[3] * facing[5] - crank[4] * facing[6], -crank[4] * facing[5] - crank[3] * facing[6]
+    cos, sin = crank[1] * facing[7] - crank[2] * facing[8], crank[2] * facing[7] + crank[1] * facing[8]
+    facing[1], facing[2] = c, s
+    facing[3], facing[4] = cos * c - sin * s, sin * c + cos * s
 
 
 @part
@@ -114,16 +129,17 @@ def seen_from_lobe(shape: Any, linkage: Any, crank: Any, turn: float, pin: Any, 
     cos_psi, sin_psi, x, y = placed(linkage, cos_phi, sin_phi, cos_chi, sin_chi)
     x, y = pin[0] - x, pin[1] - y
     x, y = cos_psi * x + sin_psi * y, cos_psi * y - sin_psi * x
-    stretch = 1.0 / (1.0 + np.sqrt(1.0 + tau_x * tau_x + tau_y * tau_y))  # (1 / cos - 1) / tan^2
-    across = stretch * (tau_x * x + tau_y * y) + height
-    x, y = x + across * tau_x, y + across * tau_y
+    if tau_x != 0.0 or tau_y != 0.0:
+        stretch = 1.0 / (1.0 + np.sqrt(1.0 + tau_x * tau_x + tau_y * tau_y))  # (1 / cos - 1) / tan^2
+        across = stretch * (tau_x * x + tau_y * y) + height
+        x, y = x + across * tau_x, y + across * tau_y
     c, s = own
     return c * x + s * y, c * y - s * x, c * tau_x + s * tau_y, c * tau_y - s * tau_x
 
 
 @part
 def touched(
-    shape: Any, linkage: Any, clock: float, flanks: Any, pin: Any, crank: Any, u: float, extra: float, lean: Any,
+    shape: Any, linkage: Any, facing: Any, flanks: Any, pin: Any, crank: Any, u: float, extra: float, lean: Any,
     sense: float, enough: float,
 ) -> tuple[float, float, bool]:  # fmt: skip
     """The carrier's turn [rad] at which one pin touches one section of a disc, beyond -phi / Zc.
@@ -134,9 +150,9 @@ def touched(
     Args:
         shape: ContactShape.
         linkage: of the disc (10,).
-        clock: angle by which the disc's profile is turned against its crank holes [rad].
+        facing: of the disc, see write_facing.
         flanks: pitch and profile errors of the disc's lobes.
-        pin: x and y of its centre, and its radius [mm].
+        pin: x and y of its centre, its radius [mm], and cosine and sine of its azimuth.
         crank: of crank_at.
         u: where the foot is sought first [rad].
         extra: added to the pin's radius [mm].
@@ -149,18 +165,18 @@ def touched(
     lobe_pitch, lobe_profile = flanks
     longest = LONGEST_STEP * TURN / shape.lobes
     shortening = shape.eccentricity * shape.pins / shape.ground_circle
-    cos_clock, sin_clock = np.cos(clock), np.sin(clock)
-    c, s, e, f = np.cos(u), np.sin(u), np.cos(shape.pins * u), np.sin(shape.pins * u)
+    c, s = pin[3] * facing[1] - pin[4] * facing[2], pin[4] * facing[1] + pin[3] * facing[2]
+    e, f = facing[3], facing[4]
     turn, before = 0.0, 0.0
     for _ in range(MOST_STEPS):
         right = f * c - e * s  # sin(Zc u)
         lobe = lobe_at(u, shape.lobes)
-        own = turned_by(cos_clock, sin_clock, lobe_turn(shape, lobe_pitch, lobe, right))
+        own = turned_by(facing[5], facing[6], lobe_turn(shape, lobe_pitch, lobe, right))
         x, y, tau_x, tau_y = seen_from_lobe(shape, linkage, crank, turn, pin, own, lean)
         speed = np.sqrt((c - shortening * e) ** 2 + (s - shortening * f) ** 2)
         n_x, n_y = (c - shortening * e) / speed, (s - shortening * f) / speed
         leans = n_x * tau_x + n_y * tau_y
-        stands = (pin[2] + extra) / np.sqrt(1.0 + leans * leans)
+        stands = pin[2] + extra if leans == 0.0 else (pin[2] + extra) / np.sqrt(1.0 + leans * leans)
         off = stands - shape.ground_radius + lobe_profile[lobe]
         miss_x = x - shape.ground_circle * c + shape.eccentricity * e - off * n_x - stands * leans * tau_x
         miss_y = y - shape.ground_circle * s + shape.eccentricity * f - off * n_y - stands * leans * tau_y
@@ -176,7 +192,7 @@ def touched(
         foot = min(max(foot, -longest), longest)
         turn += step
         u += foot
-        if abs(step) < TURN_XTOL and abs(foot) < FOOT_XTOL:
+        if abs(step) < TURN_XTOL and abs(foot) < LAST_FOOT_XTOL:
             return turn, leans, True
         if abs(step) < SETTLED * before and abs(foot) < longest and sense * turn - abs(step) > enough:
             return turn, leans, True
