@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Cone, Feature, Relation
+from tol3d.assembly.model import Assembly, Feature, Relation
 from tol3d.assembly.model.cone_seat import cone_seat
 from tol3d.assembly.placing.method import features_placed
 from tol3d.numerics.arrays import Array
@@ -65,13 +65,10 @@ def _missing(own: Relation, moving: Feature, target: Feature, pose: Array, its: 
     """The largest distance of a feature's ends from their places by a relation, and that end (3,) [mm]."""
     ends = moving.shape.ends @ pose[:3, :3].T + pose[:3, 3]
     normal, off = its[:3, 2], ends - its[:3, 3]
-    surfaces = moving.shape.surface, target.shape.surface
+    surfaces, sign = (moving.shape.surface, target.shape.surface), float(np.sign(pose[:3, 2] @ normal))
     if surfaces[1] == "point":
         missing = np.linalg.norm(off, axis=1)
-    elif own.kind == "coincident" and isinstance(target.shape, Cone) and isinstance(moving.shape, Cone):
-        sign = float(np.sign(pose[:3, 2] @ normal))
-        seat = cone_seat(moving.shape, target.shape, sign)
-        assert seat is not None, "refused before"
+    elif own.kind == "coincident" and (seat := cone_seat(moving.shape, target.shape, sign)):
         missing = np.linalg.norm(off - np.outer(seat.height + sign * moving.shape.ends[:, 2], normal), axis=1)
     elif surfaces[1] != "plane" and surfaces[0] != "plane":
         missing = np.linalg.norm(off - np.outer(off @ normal, normal), axis=1)

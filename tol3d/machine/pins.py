@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.model import Assembly, Axis
+from tol3d.assembly.model import Assembly, Shape
 from tol3d.gearing.links import Moved, StatedLink, pin_name
 from tol3d.gearing.model import Model
 from tol3d.machine.centrals import displacement_name
@@ -134,10 +134,9 @@ def _refuse_misplaced(
         raise scene.refuse(here, f"{words} about the axis, got {math.degrees(turned) % 360:.7g} deg")
 
 
-def _pose(assembly: Assembly, name: str) -> tuple[Axis, Array]:
+def _pose(assembly: Assembly, name: str) -> tuple[Shape, Array]:
     """Shape of a feature, and its frame nominally in the world (4, 4)."""
     own = assembly.features[name]
-    assert isinstance(own.shape, Axis)
     return own.shape, np.asarray(assembly.part[own.part].pose @ own.frame)
 
 

@@ -1,6 +1,5 @@
 """Contributors of a scene, and the effect of each on features and locators."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -15,7 +14,6 @@ from tol3d.assembly.grammar.forms import whole_form
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec, is_of_round_surface
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
-from tol3d.assembly.model import Cone
 from tol3d.assembly.zones import EnvelopedForm
 from tol3d.distributions import Distribution
 from tol3d.import_path import named
@@ -91,9 +89,8 @@ class _Tolerances:
             return Drawn(made, (Effect("moved_by", own.feature, self._along(own.feature, spec)[:, None]),))
         self._refuse_no_size(own, draw)
         effects = [Effect("size_by", own.feature, np.eye(1))]
-        if isinstance(shape := self.drawing.kind(own.feature).shape, Cone):
-            along = np.array([[0.0], [0.0], [0.0], [0.0], [shape.along_by_size]])
-            effects.append(Effect("moved_by", own.feature, along))
+        if (by_size := self.drawing.kind(own.feature).shape.by_size).any():
+            effects.append(Effect("moved_by", own.feature, by_size[:, None]))
         return Drawn(made, tuple(effects))
 
     def _refuse_no_size(self, own: Stated, draw: Scalar) -> None:
@@ -123,9 +120,7 @@ class _Tolerances:
         effects = [Effect("moved_by", own.feature, matrix)]
         if is_of_round_surface(own.spec, self.drawing.kind(own.feature).kind):
             shape, larger = self.drawing.kind(own.feature).shape, np.zeros((1, matrix.shape[1]))
-            larger[0, 0] = -2.0 if shape.inner else 2.0  # outward is out of the material
-            if isinstance(shape, Cone):
-                larger[0, 0] /= math.cos(shape.angle)
+            larger[0, 0] = (-2.0 if shape.inner else 2.0) * shape.slant  # outward is out of the material
             effects.append(Effect("size_by", own.feature, larger))
         return Drawn(_of_line(own, draw), tuple(effects))
 

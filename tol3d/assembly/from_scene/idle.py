@@ -13,7 +13,6 @@ from tol3d.assembly.grammar.tolerances.location import (
     RoundnessSpec,
     TotalRunOutSpec,
 )
-from tol3d.assembly.model import Axis
 
 
 def idle_forms(drawing: Drawing) -> Iterator[str]:
@@ -21,11 +20,12 @@ def idle_forms(drawing: Drawing) -> Iterator[str]:
     for own in drawing.stated:
         if not isinstance(own, Stated) or not own.is_own or not isinstance(own.spec, FormSpec):
             continue
-        located, shape = drawing.of(own.feature, LocationSpec), drawing.kind(own.feature).shape
+        located, turns = drawing.of(own.feature, LocationSpec), CircularRunOutSpec.applies_to
         alone = isinstance(own.spec, RoundnessSpec) and not any(
             isinstance(each.spec, CircularRunOutSpec | TotalRunOutSpec | ProfileSpec) for each in located
         )
-        zones = ("run-out or profile" if isinstance(shape, Axis) else "profile") if alone else "location zone"
+        surface = "run-out or profile" if drawing.kind(own.feature).kind in turns else "profile"
+        zones = surface if alone else "location zone"
         turned = any(isinstance(each.spec, AxialRunOutSpec) for each in drawing.of(own.feature, OrientationSpec))
         if own.spec.law is None and not turned and (alone or not located):
             why = f"it has no law, and {own.feature!r} has no {zones} that it could narrow"

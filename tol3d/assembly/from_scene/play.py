@@ -13,7 +13,7 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import PlaySpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, RandomSpec, TowardSpec
-from tol3d.assembly.model import Axis, Bolt, Contribution, Engage, Engagement, Feature, Floating
+from tol3d.assembly.model import Bolt, Contribution, Engage, Engagement, Feature, Floating
 from tol3d.assembly.zones.float_draw import SHIFT_AND_TURN, FloatDraw, Law
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -154,27 +154,28 @@ def _engagement(pair: EngagementSpec, features: Mapping[str, Feature], poses: Ma
     whose = {"from": one, "to": other}[pair.over] if pair.over else None
     over = () if whose is None else ("inner",) if whose is inner else ("outer",)
     axis = seen[:3, 2]
-    if isinstance(inner.shape, Axis):
-        if np.hypot(axis[0], axis[1]) > FLAT:
-            return f"expected a pin nominally along the axis of its hole, got {outer.name!r} at an angle"
-        ends = _overlap([inner.shape.ends[:, 2], seen[2, 3] + axis[2] * outer.shape.ends[:, 2]], over)
-        places = np.zeros((2, 3))
-        places[:, 2] = ends
-    elif isinstance(outer.shape, Axis):
-        if abs(axis[2]) > FLAT:
-            return f"expected a pin nominally along the faces of its slot, got {outer.name!r} across them"
-        inside = [_within(seen[r, 3], axis[r], inner.shape.reach[r]) for r in (0, 1)]
-        slot = np.array([max(low for low, _ in inside), min(high for _, high in inside)])
-        ends = _overlap([slot, outer.shape.ends[:, 2]], over)
-        places = seen[:3, 3] + ends[:, None] * axis
-        places[:, 2] = 0.0
-    else:
-        if np.hypot(axis[0], axis[1]) > FLAT:
-            return f"expected a tab nominally parallel to its slot, got {outer.name!r} at an angle"
-        own, its = inner.shape.ends, outer.shape.ends @ seen[:3, :3].T + seen[:3, 3]
-        ranges = [_overlap([np.sort(own[:, r])[[0, -1]], np.sort(its[:, r])[[0, -1]]], over) for r in (0, 1)]
-        ends = min(ranges, key=lambda found: found[1] - found[0])
-        places = np.array([[x, y, 0.0] for x in ranges[0] for y in ranges[1]])
+    match inner.shape.surface, outer.shape.surface:
+        case "axis", _:
+            if np.hypot(axis[0], axis[1]) > FLAT:
+                return f"expected a pin nominally along the axis of its hole, got {outer.name!r} at an angle"
+            ends = _overlap([inner.shape.ends[:, 2], seen[2, 3] + axis[2] * outer.shape.ends[:, 2]], over)
+            places = np.zeros((2, 3))
+            places[:, 2] = ends
+        case _, "axis":
+            if abs(axis[2]) > FLAT:
+                return f"expected a pin nominally along the faces of its slot, got {outer.name!r} across them"
+            inside = [_within(seen[r, 3], axis[r], inner.shape.reach[r]) for r in (0, 1)]
+            slot = np.array([max(low for low, _ in inside), min(high for _, high in inside)])
+            ends = _overlap([slot, outer.shape.ends[:, 2]], over)
+            places = seen[:3, 3] + ends[:, None] * axis
+            places[:, 2] = 0.0
+        case _:
+            if np.hypot(axis[0], axis[1]) > FLAT:
+                return f"expected a tab nominally parallel to its slot, got {outer.name!r} at an angle"
+            own, its = inner.shape.ends, outer.shape.ends @ seen[:3, :3].T + seen[:3, 3]
+            ranges = [_overlap([np.sort(own[:, r])[[0, -1]], np.sort(its[:, r])[[0, -1]]], over) for r in (0, 1)]
+            ends = min(ranges, key=lambda found: found[1] - found[0])
+            places = np.array([[x, y, 0.0] for x in ranges[0] for y in ranges[1]])
     if ends[1] - ends[0] <= SHORT:
         words = f"expected features that share a stretch nominally, got {outer.name!r} outside {inner.name!r}"
         return f"{words}; place the parts, or say whose ends count as `over`"

@@ -18,7 +18,7 @@ from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.tolerances.location import Composite
-from tol3d.assembly.model import Assembly, Feature, Part, RoundPlane
+from tol3d.assembly.model import Assembly, Feature, Part
 from tol3d.assembly.placing.holding import held_by_datums
 from tol3d.assembly.zones import ZoneDraw, catalogue
 from tol3d.numerics.arrays import Array
@@ -73,10 +73,10 @@ class Member:
 
     def largest_displacement(self, centre: Array, turns: Array) -> float:
         """The largest displacement by a turn of length 1 among turns (3, turns); of a disc a bound."""
-        if isinstance(self.feature.shape, RoundPlane):
+        if radius := self.feature.shape.rim_radius:
             middle = np.cross(self.place - centre, self.directions[0]) @ turns
             rim = np.cross(self.feature.frame[:3, :2].T, self.directions[0]) @ turns
-            return float(np.linalg.norm(middle) + self.feature.shape.radius * np.linalg.norm(rim, 2))
+            return float(np.linalg.norm(middle) + radius * np.linalg.norm(rim, 2))
         return max(float(np.linalg.norm(own @ turns, 2)) for own in self.levers(centre))
 
     def moved(self, centre: Array, shifts: Array, turns: Array) -> Array:

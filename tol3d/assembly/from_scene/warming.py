@@ -14,7 +14,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model import Axis, Datum, DatumFrame, Point, Slot
+from tol3d.assembly.model import Datum, DatumFrame, Shape
 from tol3d.numerics.arrays import Array
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.draw import Scalar
@@ -124,26 +124,20 @@ def _asked(datum: Datum, features: Sequence[FeatureUnion], reach: float, left: A
         sides = np.linalg.svd((features[-1].frame[:3, 3] - frame[:3, 3])[None])[2][1:]
         yield rows(place, sides), sides @ place
         yield turns(sides)
-    elif isinstance(own.shape, Point):
-        yield rows(place, np.eye(3)), place
-    elif isinstance(own.shape, Axis):
-        yield rows(place, _sides(own)), _sides(own) @ _grown(own)
-        yield turns(sides)
     elif datum.targets is not None:
         for target in datum.targets:
             yield rows(frame[:3, :3] @ target + place, frame[:3, 2:3].T), frame[:3, 2:3].T @ place
     else:
-        height = rows(place, frame[:3, 2:3].T), frame[:3, 2:3].T @ place
-        order = [turns(sides), height]
-        if isinstance(own.shape, Slot) and _by_place(
-            np.concatenate([height[0], order[0][0] / reach]) @ left, own.shape
-        ):
-            order = order[::-1]
-        yield from order
+        held, turning = own.shape.asks
+        asked = [(rows(place, _sides(own)), _sides(own) @ _grown(own)), turns(sides)][: 1 if turning == "none" else 2]
+        by_place = held != "along" or _by_place(np.concatenate([asked[0][0], asked[1][0] / reach]) @ left, own.shape)
+        yield from asked if by_place else asked[::-1]
 
 
-def _by_place(moved: Array, shape: Slot) -> bool:
-    """True if one motion is left, which moves a slot's middle more than its ends over that."""
+def _by_place(moved: Array, shape: Shape) -> bool:
+    """True of a slot or tab if one motion is left, which moves its middle more than its ends over that."""
+    if shape.nominal_size is None:
+        return False
     away, about_x, about_y = np.abs(moved).max(axis=1, initial=0.0)
     alone = np.linalg.matrix_rank(moved, tol=SEEN) == 1
     return bool(alone and away > shape.reach[1] * about_x + shape.reach[0] * about_y - SEEN)

@@ -15,6 +15,7 @@ from tol3d.assembly.grammar.features import (
     SlotSpec,
     SphereSpec,
 )
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances.feature_tolerance import Modified
 from tol3d.assembly.grammar.tolerances.location import (
@@ -27,7 +28,7 @@ from tol3d.assembly.grammar.tolerances.location import (
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec, are_alike
-from tol3d.assembly.model import Axis, Cone, Contribution, Feature
+from tol3d.assembly.model import Contribution, Feature
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones import (
     Bonus,
@@ -114,7 +115,7 @@ def _refuse_no_ring(scene: Scene, own: Stated, drawing: Drawing) -> None:
     """A ring is of where an axis lies, in a cylinder or at a section, and of an axis that does not lean."""
     spec, path = own.spec, ("tolerances", own.entry, "law")
     surface = isinstance(spec, ProfileSpec)  # whose zone holds the size too
-    located = isinstance(spec, LocationSpec) and isinstance(drawing.kind(own.feature).shape, Axis) and not surface
+    located = isinstance(spec, LocationSpec) and drawing.kind(own.feature).kind in AXES and not surface
     if not isinstance(spec, LocationSpec) or not located or spec.zone.along is not None:
         words = f"expected uniform, normal or process, got ring of a {spec.kind} of {own.feature!r}"
         raise scene.refuse(path, f"{words}; a ring is of where an axis lies, in a cylinder or at a section")
@@ -132,15 +133,15 @@ def _projecting(scene: Scene, own: Stated, drawing: Drawing) -> Array:
     assert isinstance(own.spec, LocationSpec | OrientationSpec)
     projected = own.spec.zone.projected
     assert projected is not None
-    shape, path = drawing.kind(own.feature).shape, ("tolerances", own.entry, "zone", "projected")
-    if not isinstance(shape, Axis) or isinstance(shape, Cone) or isinstance(own.spec, CircularRunOutSpec | ProfileSpec):
+    kind, path = drawing.kind(own.feature), ("tolerances", own.entry, "zone", "projected")
+    if kind.kind not in ("axis", "cylinder") or isinstance(own.spec, CircularRunOutSpec | ProfileSpec):
         words = (
             f"expected a location or an orientation of an axis or a cylinder, got {own.spec.kind} of {own.feature!r}"
         )
         raise scene.refuse(path, f"{words}; take projected out")
     if isinstance(own.spec, OrientationSpec):
-        return np.eye(4) * (shape.length / projected.internal)
-    return seen_from_projected(shape.length, projected.internal)
+        return np.eye(4) * (kind.shape.longest / projected.internal)
+    return seen_from_projected(kind.shape.longest, projected.internal)
 
 
 def _size(scene: Scene, own: Stated, drawing: Drawing, zone: Zone) -> SizedBy | None:
@@ -256,8 +257,7 @@ def _mixed(
 
 def _section(spec: LocationSpec | OrientationSpec, feature: FeatureUnion, form: float) -> Zone:
     """The zone of an axis at one section; a run-out of a cone is read square to its surface."""
-    shape, is_read = feature.shape, isinstance(spec, CircularRunOutSpec)
-    slant = 1.0 / math.cos(shape.angle) if is_read and isinstance(shape, Cone) else 1.0
+    slant = feature.shape.slant if isinstance(spec, CircularRunOutSpec) else 1.0
     return catalogue.axis_section(spec.zone.size, form, slant)
 
 
@@ -293,13 +293,12 @@ def projected_name(feature: str, length: float) -> str:
 
 def projected(feature: Feature, length: float) -> Feature:
     """The part of an axis beyond its end along +z, of some length [mm], as a feature. ISO 10578, ASME Y14.5."""
-    assert isinstance(feature.shape, Axis)
-    frame = feature.frame.copy()
-    frame[:3, 3] += (feature.shape.length + length) / 2 * frame[:3, 2]
-    share = length / feature.shape.length
+    frame, own_length = feature.frame.copy(), feature.shape.longest
+    frame[:3, 3] += (own_length + length) / 2 * frame[:3, 2]
+    share = length / own_length
     ends = _at_ends(0.0, 1.0, -share, 1.0 + share)
     moved_by = tuple(Contribution(own.contributor, own.columns, ends @ own.matrix) for own in feature.moved_by)
-    name, shape = projected_name(feature.name, length), replace(feature.shape, length=length)
+    name, shape = projected_name(feature.name, length), feature.shape.of_length(length)
     return replace(feature, name=name, shape=shape, frame=frame, moved_by=moved_by, is_named=False)
 
 

@@ -19,7 +19,6 @@ from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.grammar.tolerances.location import Composite, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import are_alike
-from tol3d.assembly.model import Plane
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -65,7 +64,7 @@ def _of_measure(drawing: Drawing, name: str, spec: FeatureMeasureSpec) -> Iterat
 def _unread(drawing: Drawing, of: str, across: bool) -> str | None:
     """A feature that a position over places of gauges cannot be of, in words; of a point it is `across` a direction."""
     kind = drawing.kind(of)
-    flat = kind.kind == "plane" and isinstance(kind.shape, Plane)
+    flat = kind.kind == "plane" and kind.extent is not None
     if kind.kind in (*AXES, "slot") or flat or (kind.kind == "point" and across):
         return None
     return f"expected a hole, pin, axis, cone, slot, flat rectangle or a point with `across`, got {of!r}"

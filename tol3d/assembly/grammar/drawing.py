@@ -32,7 +32,6 @@ from tol3d.assembly.grammar.tolerances.location import (
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import ENVELOPED, LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ZoneSpec
-from tol3d.assembly.model import Axis
 from tol3d.assembly.model.dimension import longer
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -199,7 +198,7 @@ class Drawing:
         match located:
             case CircularRunOutSpec():
                 return of_section(forms, shape, room)
-            case TotalRunOutSpec() | ProfileSpec() if isinstance(shape, Axis):
+            case TotalRunOutSpec() | ProfileSpec() if self.kind(feature).kind in TotalRunOutSpec.applies_to:
                 return of_total_run_out(forms, shape, room)
             case ProfileSpec() if shape.diameter is not None:
                 return of_section(forms, shape, room)
@@ -234,11 +233,10 @@ class Drawing:
         return left * max(shape.reach) / radius.internal
 
     def held_over(self, feature: str, zone: ZoneSpec) -> float:
-        """The length over which a zone holds an axis [mm]: its own, or beyond its end; 1 of what has no ends."""
+        """The length over which a zone holds a feature [mm]: its own, or beyond its end; 1 of a point."""
         if zone.projected is not None:
             return zone.projected.internal
-        shape = self.kind(feature).shape
-        return shape.length if isinstance(shape, Axis) else 1.0
+        return self.kind(feature).shape.longest or 1.0
 
     def is_sized(self, feature: str) -> bool:
         """True if a tolerance states its size: a size tolerance, or a profile of a round surface."""

@@ -29,7 +29,6 @@ from tol3d.assembly.grammar.tolerances.location import (
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import ENVELOPED, PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ProcessLawSpec, are_alike
-from tol3d.assembly.model import RoundPlane
 from tol3d.files import Files
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, another_size, larger_end
@@ -106,11 +105,11 @@ def _form_problems(here: KeyPath, spec: FormSpec, drawing: Drawing, feature: str
 
 
 def _axial_problems(here: KeyPath, spec: AxialRunOutSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:
-    shape = drawing.kind(feature).shape
-    if not isinstance(shape, RoundPlane):
+    kind = drawing.kind(feature)
+    if kind.kind != "plane" or kind.radius is None:
         yield (*here, "of"), f"expected a plane with a `radius`, which turns about the axis, got {feature!r}"
-    elif spec.radius is not None and spec.radius.internal > shape.radius:
-        words = f"expected a circle on the face, whose radius is {shape.radius:g} mm, got {spec.radius}"
+    elif spec.radius is not None and spec.radius.internal > kind.radius.internal:
+        words = f"expected a circle on the face, whose radius is {kind.radius.internal:g} mm, got {spec.radius}"
         yield (*here, "radius"), words
     if drawing.form(feature, spec) >= spec.zone.size:
         words = f"expected more than the {drawing.form(feature, spec) * 1e3:g} um of its form, which it holds too"

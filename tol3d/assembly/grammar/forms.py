@@ -15,7 +15,6 @@ from tol3d.assembly.grammar.tolerances.location import (
     RoundnessSpec,
     StraightnessSpec,
 )
-from tol3d.assembly.model import Axis
 from tol3d.assembly.model.feature import Shape
 
 Forms = Sequence[FormSpec]
@@ -55,10 +54,8 @@ def _length(spec: StraightnessSpec, shape: Shape) -> float:
 
 def of_location(forms: Forms, shape: Shape, room: float) -> float:
     """Part of the zone of an axis, a median plane or a face used by form [mm]."""
-    if isinstance(shape, Axis):
-        return _least(forms, shape, room, lambda own: isinstance(own, StraightnessSpec | CylindricitySpec))
     flat = _least(forms, shape, room, lambda own: isinstance(own, FlatnessSpec))
-    return flat or _least(forms, shape, room, lambda own: isinstance(own, StraightnessSpec))
+    return flat or _least(forms, shape, room, lambda own: isinstance(own, StraightnessSpec | CylindricitySpec))
 
 
 def of_section(forms: Forms, shape: Shape, room: float) -> float:

@@ -9,7 +9,7 @@ h = (r + q e - R) / k - e. That end stays on its part while its cone lies off al
 from dataclasses import dataclass
 from typing import Final
 
-from tol3d.assembly.model.feature import Cone
+from tol3d.assembly.model.feature import Shape
 
 ALIKE: Final = 1e-9
 """Part of a slope by which two slopes of one cone differ by rounding."""
@@ -32,7 +32,7 @@ class ConeSeat:
     by_target: float = 0.0
 
 
-def unfit_cones(moving: Cone, target: Cone, sign: float) -> str:
+def unfit_cones(moving: Shape, target: Shape, sign: float) -> str:
     """Why two cones do not lie in each other, in words; "" where they do.
 
     Args:
@@ -46,25 +46,28 @@ def unfit_cones(moving: Cone, target: Cone, sign: float) -> str:
     return "" if cone_seat(moving, target, sign) else MISSED
 
 
-def cone_seat(moving: Cone, target: Cone, sign: float) -> ConeSeat | None:
-    """Their seat; None where neither's end reaches the other one.
+def cone_seat(moving: Shape, target: Shape, sign: float) -> ConeSeat | None:
+    """Their seat; None where neither's end reaches the other one, or one is no cone.
 
     Args:
         moving, target: one in the other, which widens the same way.
         sign: of the moving cone's z along the target's.
     """
-    own, its = moving.middle_diameter / 2, target.middle_diameter / 2
+    if not (moving.slope and target.slope):
+        return None
     slope, other = sign * moving.slope, target.slope
+    own, its = ((shape.nominal_size or 0.0) / 2 for shape in (moving, target))
+    half, its_half = moving.reach[0], target.reach[0]
     if abs(slope - other) <= ALIKE * abs(other):
         height = (own - its) / other
-        return ConeSeat(height) if abs(height) <= (moving.length + target.length) / 2 else None
+        return ConeSeat(height) if abs(height) <= half + its_half else None
     hole, pin = (slope, other) if moving.inner else (other, slope)
     lower = -1.0 if hole > pin else 1.0  # the end of the engagement at which they are nearer
-    end, its_end = lower * moving.length / 2, lower * target.length / 2
+    end, its_end = lower * half, lower * its_half
     height = its_end - (its + other * its_end - own) / slope
-    if abs(its_end - height) <= moving.length / 2 * (1.0 + ON_END):
+    if abs(its_end - height) <= half * (1.0 + ON_END):
         return ConeSeat(height, by_target=other / slope - 1.0)
     height = (own + slope * end - its) / other - end
-    if abs(height + end) <= target.length / 2 * (1.0 + ON_END):
+    if abs(height + end) <= its_half * (1.0 + ON_END):
         return ConeSeat(height, by_moving=sign * (1.0 - slope / other))
     return None

@@ -2,10 +2,10 @@
 
 import math
 from abc import abstractmethod
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 
@@ -14,6 +14,12 @@ from tol3d.numerics.values import Valued
 
 Surface = Literal["point", "axis", "cone", "plane"]
 """Surface that others touch or mate, apart from its size: of a sphere its centre, of a cylinder its axis."""
+
+Held = Literal["along", "across", "all"]
+"""Constraint of a point: its height along the target's direction, its place across it, or its place."""
+Turning = Literal["none", "direction", "level"]
+"""Constraint of a direction: none, the target's, or only perpendicular to it."""
+Asks = tuple[Held, Turning]
 
 Displaced = Callable[[Array], Array]
 """Displacement (3, ...) of a point (3,) of a feature, both in its frame [mm]."""
@@ -29,10 +35,35 @@ class Facts:
     surface: ClassVar[Surface]
     located: ClassVar[slice]
     """Axes of its frame along which its position counts at its ends."""
-    held: ClassVar[slice]
-    """Axes of its frame along which a datum holds its origin."""
+    asks: ClassVar[Asks]
+    """Constraint by it as a datum."""
     facing: ClassVar[str] = ""
     """Word before the direction of its z."""
+
+    @property
+    def held(self) -> slice:
+        """Axes of its frame along which a datum holds its origin."""
+        return {"along": slice(2, 3), "across": slice(0, 2), "all": slice(0, 3)}[self.asks[0]]
+
+    @property
+    def slope(self) -> float:
+        """Tangent of the angle from its z to the lines of its surface; negative if it narrows along z."""
+        return 0.0
+
+    @property
+    def slant(self) -> float:
+        """Displacement of its axis or centre over that of its surface, square to it."""
+        return 1.0
+
+    @property
+    def turn_by(self) -> Array:
+        """(3, components): components -> rotation of its frame, in it [rad/mm]."""
+        return np.zeros((3, len(self.components)))
+
+    @property
+    @abstractmethod
+    def ends(self) -> Array:
+        """Points at which its position is evaluated (ends, 3), in its frame [mm]."""
 
     @property
     def inner(self) -> bool:
@@ -59,6 +90,39 @@ class Facts:
         """Place along z of the point about which it grows into a similar shape, from its middle [mm]."""
         return 0.0
 
+    @property
+    def by_size(self) -> Array:
+        """(components,): its components by a size 1 mm larger."""
+        return np.zeros(len(self.components))
+
+    @property
+    def outward_by(self) -> tuple[float, float] | None:
+        """Displacement of a round surface out of the material, square to it, by a shift along z and by its size."""
+        return None if self.diameter is None else (0.0, -0.5 if self.inner else 0.5)
+
+    @property
+    def surface_by_axis(self) -> Array:
+        """(ends, ends): offsets of the ends of its axis -> displacements of its surface there, square to it."""
+        return np.eye(len(self.ends))
+
+    @property
+    def limits(self) -> Sequence[tuple[slice, float]]:
+        """Coordinates of a point, alone or together, and their length up to which it is over a face [mm]."""
+        return ()
+
+    @property
+    def rim_radius(self) -> float | None:
+        """Radius of its edge [mm]; None of one with corners or ends."""
+        return None
+
+    def edge(self, angles: Array) -> Array:
+        """Places (places, 3) where a distance may be largest, in its frame [mm]: its ends, or at angles of a rim."""
+        return self.ends
+
+    def of_length(self, length: float) -> Self:
+        """It with another length along z [mm]; itself if it has none."""
+        return self
+
 
 @dataclass(frozen=True)
 class Point(Facts):
@@ -76,7 +140,7 @@ class Point(Facts):
     origin_by: ClassVar[Array] = np.eye(3)
     surface: ClassVar[Surface] = "point"
     located: ClassVar[slice] = slice(0, 3)
-    held: ClassVar[slice] = located
+    asks: ClassVar[Asks] = ("all", "none")
 
     @property
     def words(self) -> str:
@@ -106,13 +170,22 @@ class Flat(Facts):
     origin_by: ClassVar[Array] = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
     surface: ClassVar[Surface] = "plane"
     located: ClassVar[slice] = slice(2, 3)
-    held: ClassVar[slice] = located
+    asks: ClassVar[Asks] = ("along", "direction")
     facing: ClassVar[str] = "facing"
+    rim: ClassVar[Array]
+    """(places, numbers, 2): rises at the ends of x and y -> numbers whose largest length is the rise of its rim."""
 
     @property
     @abstractmethod
     def reach(self) -> tuple[float, float]:
         """From the middle to where the rises are, along x and y [mm]."""
+
+    @property
+    def turn_by(self) -> Array:
+        """See Facts: its height is w + alpha y - beta x."""
+        (x, y), found = self.reach, np.zeros((3, 3))
+        found[0, 2], found[1, 1] = 1.0 / y, -1.0 / x
+        return found
 
     def moved(self, displaced: Displaced) -> Array:
         """See Point."""
@@ -131,6 +204,8 @@ class Plane(Flat):
 
     extent: tuple[float, float]
 
+    rim: ClassVar[Array] = np.array([[[1.0, 1.0]], [[1.0, -1.0]]])
+
     @property
     def words(self) -> str:
         """See Point."""
@@ -141,6 +216,10 @@ class Plane(Flat):
     def reach(self) -> tuple[float, float]:
         """From the middle to where the rises are, along x and y [mm]."""
         return self.extent[0] / 2, self.extent[1] / 2
+
+    @property
+    def limits(self) -> Sequence[tuple[slice, float]]:
+        return (slice(0, 1), self.reach[0]), (slice(1, 2), self.reach[1])
 
     @property
     def longest(self) -> float:
@@ -191,6 +270,8 @@ class RoundPlane(Flat):
 
     radius: float
 
+    rim: ClassVar[Array] = np.eye(2)[None]
+
     @property
     def words(self) -> str:
         """See Point."""
@@ -202,6 +283,14 @@ class RoundPlane(Flat):
         return self.radius, self.radius
 
     @property
+    def limits(self) -> Sequence[tuple[slice, float]]:
+        return ((slice(0, 2), self.radius),)
+
+    @property
+    def rim_radius(self) -> float:
+        return self.radius
+
+    @property
     def longest(self) -> float:
         """Its diameter [mm]."""
         return 2.0 * self.radius
@@ -210,6 +299,9 @@ class RoundPlane(Flat):
     def ends(self) -> Array:
         """Ends of its rim along x and y (4, 3), in its frame [mm]."""
         return self.radius * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+
+    def edge(self, angles: Array) -> Array:
+        return self.radius * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
 
 
 @dataclass(frozen=True)
@@ -231,7 +323,7 @@ class Axis(Facts):
     origin_by: ClassVar[Array] = 0.5 * np.array([[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.0]])
     surface: ClassVar[Surface] = "axis"
     located: ClassVar[slice] = slice(0, 2)
-    held: ClassVar[slice] = located
+    asks: ClassVar[Asks] = ("across", "direction")
     facing: ClassVar[str] = "along"
 
     @property
@@ -256,6 +348,16 @@ class Axis(Facts):
         """Its ends (2, 3), in its frame [mm]."""
         return np.array([[0.0, 0.0, -self.length / 2], [0.0, 0.0, self.length / 2]])
 
+    @property
+    def turn_by(self) -> Array:
+        """See Facts: it passes both its ends."""
+        found = np.zeros((3, len(self.components)))
+        found[1, [0, 2]] = found[0, [3, 1]] = -1.0 / self.length, 1.0 / self.length
+        return found
+
+    def of_length(self, length: float) -> Self:
+        return replace(self, length=length)
+
     def moved(self, displaced: Displaced) -> Array:
         """See Point."""
         return np.concatenate([displaced(end)[:2] for end in self.ends])
@@ -276,7 +378,7 @@ class Cone(Axis):
     """Those of its axis, and the shift of the cone along it [mm]."""
     origin_by: ClassVar[Array] = np.column_stack([Axis.origin_by, [0.0, 0.0, 1.0]])
     surface: ClassVar[Surface] = "cone"
-    held: ClassVar[slice] = slice(0, 3)
+    asks: ClassVar[Asks] = ("all", "direction")
 
     @property
     def words(self) -> str:
@@ -306,8 +408,19 @@ class Cone(Axis):
 
     @property
     def slope(self) -> float:
-        """Tangent of the angle from its axis to its lines; negative if it narrows along z."""
         return (self.diameters[1] - self.diameters[0]) / (2 * self.length)
+
+    @property
+    def slant(self) -> float:
+        return 1.0 / math.cos(self.angle)
+
+    @property
+    def by_size(self) -> Array:
+        return np.array([0.0, 0.0, 0.0, 0.0, self.along_by_size])
+
+    @property
+    def outward_by(self) -> tuple[float, float]:
+        return math.sin(self.angle if self.inner else -self.angle), 0.0  # its size is where it lies along its axis
 
     @property
     def along_by_size(self) -> float:

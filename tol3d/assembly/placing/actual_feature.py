@@ -1,13 +1,25 @@
 """Features as they are in a trial, in the frame of their part."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar, Final, Self
 
 import numpy as np
 
-from tol3d.assembly.model.feature import Axis, Contribution, Feature, Point, RoundPlane
-from tol3d.assembly.placing.poses import Pose, dot, least_rotation, length, product, repeated, rotated, square_to, unit
+from tol3d.assembly.model.feature import Axis, Cone, Contribution, Feature, Plane, Point, RoundPlane, Slot
+from tol3d.assembly.placing.poses import (
+    Pose,
+    column,
+    dot,
+    least_rotation,
+    length,
+    product,
+    repeated,
+    rotated,
+    square_to,
+    unit,
+)
 from tol3d.numerics.arrays import Array
 
 _Z = np.array([[0.0], [0.0], [1.0]])
@@ -48,6 +60,14 @@ class ActualFeature:
     centre: Array
     span: tuple[Array, ...]
 
+    asked: ClassVar[tuple[str, ...]] = ()
+    """Quantities that a datum after gauges asks, in order: of a slot or tab, on which walls close, all corners."""
+
+    @classmethod
+    def of(cls, feature: Feature, base: Pose, moved: Sequence[Array]) -> Self:
+        """A feature by its shape's components, each (n,) [mm]."""
+        return cls(feature, base, _vector(*moved), ())
+
     @cached_property
     def origin(self) -> Array:
         """Its origin (3, n) [mm]."""
@@ -80,6 +100,11 @@ class ActualFeature:
         """Points at which its position is evaluated, each (3, n) [mm]; of a disc, the ends of its reaches."""
         return [self.origin]
 
+    @property
+    def axes(self) -> tuple[Array, ...]:
+        """Directions across which it leaves play (3, n), as a hole or slot."""
+        return (self.direction,)
+
     def moved(self, pose: Pose) -> "ActualFeature":
         """It in another frame, to which the pose takes its own."""
         return replace(self, base=pose @ self.base)
@@ -97,9 +122,24 @@ class ActualFeature:
         """A point of a plane or an axis, stated in its frame (3,), as high or far aside as it is there (3, n) [mm]."""
         return self.base.point(self.centre + np.reshape(target, (3, 1)))
 
+    def within(self, place: Array) -> Array:
+        """The point of it as a hole or slot, at a place in its frame (3,), from which offsets of a pin or tab count."""
+        return self.origin
+
+    def seen(self, along: Array) -> tuple[Array, Array]:
+        """Part of its size that a slot sees, and the change of that, by the cosine of their directions (n,)."""
+        return np.abs(along), np.where(along > 0.0, 1.0, -1.0)
+
     def counted(self, aside: Array, z: Array) -> Array:
         """The part of an offset (3, n) that counts in its position, whose nominal z is (3, 1): of a point all of it."""
         return aside
+
+    def farthest(self, frame: Array) -> Array:
+        """The largest offset that counts of its ends from their places in a nominal frame (4, 4) (n,) [mm]."""
+        found, z = np.zeros(1), column(frame[:3, 2])
+        for end, place in zip(self.ends, self.feature.shape.ends, strict=True):
+            found = np.maximum(found, length(self.counted(end - column(frame[:3, :3] @ place + frame[:3, 3]), z)))
+        return found
 
     def lean(self, z: Array) -> Array:
         """Width (n,) of the zone along a nominal z (3, 1) that holds its direction [mm]; 0 of a point."""
@@ -108,6 +148,15 @@ class ActualFeature:
 
 class ActualAxis(ActualFeature):
     """An axis in its trials."""
+
+    asked: ClassVar[tuple[str, ...]] = ("aside", "direction")
+
+    @classmethod
+    def of(cls, feature: Feature, base: Pose, moved: Sequence[Array]) -> Self:
+        start_x, start_y, end_x, end_y, *along = moved
+        (half,) = feature.shape.reach
+        middle = _vector((start_x + end_x) / 2, (start_y + end_y) / 2, along[0] if along else 0.0)
+        return cls(feature, base, middle, (_vector((end_x - start_x) / 2, (end_y - start_y) / 2, half),))
 
     @cached_property
     def _tilted(self) -> Array:
@@ -125,6 +174,17 @@ class ActualAxis(ActualFeature):
         (half,) = self.feature.shape.reach
         return np.asarray(self.origin + target[2] / half * self.spans[0])
 
+    @property
+    def axes(self) -> tuple[Array, ...]:
+        return self.pose.turn[:, 0], self.pose.turn[:, 1]
+
+    def within(self, place: Array) -> Array:
+        return self.at(place)
+
+    def seen(self, along: Array) -> tuple[Array, Array]:
+        share = np.sqrt(np.maximum(1.0 - along * along, 0.0))
+        return share, np.where(share > 0.0, -along / np.where(share > 0.0, share, 1.0), 0.0)
+
     def counted(self, aside: Array, z: Array) -> Array:
         return square_to(aside, z)
 
@@ -134,6 +194,13 @@ class ActualAxis(ActualFeature):
 
 class ActualPlane(ActualFeature):
     """A rectangle in its trials."""
+
+    asked: ClassVar[tuple[str, ...]] = ("direction", "height")
+
+    @classmethod
+    def of(cls, feature: Feature, base: Pose, moved: Sequence[Array]) -> Self:
+        (offset, rise_x, rise_y), (a, b) = moved, feature.shape.reach
+        return cls(feature, base, _vector(0.0, 0.0, offset), (_vector(a, 0.0, rise_x), _vector(0.0, b, rise_y)))
 
     @cached_property
     def _tilted(self) -> Array:
@@ -161,6 +228,12 @@ class ActualPlane(ActualFeature):
         return 2.0 * self.rise(z)
 
 
+class ActualSlot(ActualPlane):
+    """A slot or tab in its trials."""
+
+    asked: ClassVar[tuple[str, ...]] = ("corners",)
+
+
 class ActualDisc(ActualPlane):
     """A disc in its trials."""
 
@@ -172,6 +245,17 @@ class ActualDisc(ActualPlane):
     def rise(self, direction: Array) -> Array:
         x, y = (np.abs(dot(direction, span)) for span in self.spans)
         return np.asarray(np.sqrt(x * x + y * y))
+
+    def farthest(self, frame: Array) -> Array:
+        z = column(frame[:3, 2])
+        return np.asarray(np.abs(dot(z, self.origin - column(frame[:3, 3]))) + self.rise(z))
+
+
+ACTUAL: Final[Mapping[type, type[ActualFeature]]] = {
+    Point: ActualFeature, Plane: ActualPlane, Slot: ActualSlot, RoundPlane: ActualDisc, Axis: ActualAxis,
+    Cone: ActualAxis,
+}  # fmt: skip
+"""The only place of this method that asks for the class of a shape."""
 
 
 def _slope(rise: Array | float, reach: float) -> Array:
@@ -187,7 +271,8 @@ def actual(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
         base: of its nominal frame in the part's, as its datum frame carries it in the trials.
         columns: the deviations, (width, n) [mm].
     """
-    found = _deviating(feature, base, columns)
+    moved = total(feature.moved_by, len(feature.shape.components), columns)
+    found = ACTUAL[type(feature.shape)].of(feature, base, moved)
     if not feature.grown_by:
         return found
     return replace(found, centre=found.centre + _vector(*total(feature.grown_by, 3, columns)))
@@ -197,22 +282,6 @@ def nominally(feature: Feature) -> ActualFeature:
     """A feature without deviations, where it is nominally in its part."""
     bare = Feature(feature.name, feature.part, feature.shape, feature.frame)
     return actual(bare, Pose.of(feature.frame), np.zeros((0, 1)))
-
-
-def _deviating(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
-    """By its shape's components."""
-    shape = feature.shape
-    moved = total(feature.moved_by, len(shape.components), columns)
-    if isinstance(shape, Axis):
-        start_x, start_y, end_x, end_y, *along = moved
-        middle = _vector((start_x + end_x) / 2, (start_y + end_y) / 2, along[0] if along else 0.0)
-        half = _vector((end_x - start_x) / 2, (end_y - start_y) / 2, shape.length / 2)
-        return ActualAxis(feature, base, middle, (half,))
-    if isinstance(shape, Point):
-        return ActualFeature(feature, base, _vector(*moved), ())
-    (offset, rise_x, rise_y), (a, b) = moved, shape.reach
-    kind = ActualDisc if isinstance(shape, RoundPlane) else ActualPlane
-    return kind(feature, base, _vector(0.0, 0.0, offset), (_vector(a, 0.0, rise_x), _vector(0.0, b, rise_y)))
 
 
 def actual_size(feature: Feature, columns: Array) -> Array:

@@ -14,6 +14,7 @@ from typing import Literal
 
 import numpy as np
 
+from tol3d.assembly.model.feature import Held, Turning
 from tol3d.assembly.model.statuses import NO_CONTACT, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.poses import (
@@ -31,12 +32,6 @@ from tol3d.assembly.placing.poses import (
     unit,
 )
 from tol3d.numerics.arrays import Array
-
-Held = Literal["along", "across", "all"]
-"""Constraint of a point: its height along the target's direction, its place across it, or its place."""
-
-Turning = Literal["none", "direction", "level"]
-"""Constraint of a direction: none, the target's, or only perpendicular to it."""
 
 ROUNDS = 6
 """Repetitions of a turn and the shifts that follow it where targets are tilted: each leaves their slope times as much,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tol3d.assembly.model import Assembly
+from tol3d.assembly.model.feature import Asks
 from tol3d.numerics.arrays import Array
 
 
@@ -32,6 +33,13 @@ def point_rows(at: Array, directions: Array) -> Array:
 def direction_rows(toward: Array) -> Array:
     """Rows of a direction that stays."""
     return np.hstack([np.zeros((2, 3)), across(toward)])
+
+
+def rows_of(asks: Asks, at: Array, z: Array) -> Array:
+    """Rows of a point (3,) and a direction (3,) that stay as is asked; not of a direction that stays level."""
+    held, turning = asks
+    rows = point_rows(at, np.eye(3) if held == "all" else z[None] if held == "along" else across(z))
+    return np.concatenate([rows, direction_rows(z)]) if turning == "direction" else rows
 
 
 def across(direction: Array) -> Array:

@@ -6,9 +6,10 @@ from typing import Protocol
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Cone, Datum, DatumFrame, Part, Point, Slot
+from tol3d.assembly.model import Datum, DatumFrame, Part
+from tol3d.assembly.model.feature import Asks
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual, nominally, total
-from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
+from tol3d.assembly.placing.alignment import Alignment, Seat, Tie
 from tol3d.assembly.placing.freedoms import aligned
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, dot, repeated, unit
 from tol3d.assembly.placing.seen_motions import Pattern, pattern
@@ -19,7 +20,6 @@ ABREAST = 1e-6
 """Spread [mm] of points across a line, below which they lie on it."""
 
 Actual = Callable[[str], ActualFeature]
-Asks = tuple[Held, Turning]
 
 
 class OnGauges(Protocol):
@@ -189,24 +189,18 @@ def fitted_line(places: Sequence[Array]) -> tuple[Array, Array]:
 
 
 def _single(datum: Datum, k: int, own: ActualFeature, simulator: ActualFeature) -> Iterator[tuple[Asks, Seat]]:
-    shape = own.feature.shape
-    if isinstance(shape, Axis):
-        held: Held = "all" if isinstance(shape, Cone) else "across"
-        yield (held, "direction"), Seat(own.origin, simulator.origin, own.direction, simulator.direction)
-    elif isinstance(shape, Point):
-        yield ("all", "none"), Seat(own.origin, simulator.origin)
-    elif datum.simulator == "targets" and datum.targets is not None and k > 0:
+    asks = own.feature.shape.asks
+    if datum.simulator == "targets" and datum.targets is not None and k > 0:
         for target in datum.targets:
             point, place = own.at(target), simulator.at(target)
             yield ("along", "none"), Seat(point, place, None, simulator.direction, centre=own.origin)
+    elif asks[1] == "none":
+        yield asks, Seat(own.origin, simulator.origin)
     else:
-        is_wide = isinstance(shape, Slot)
-        outermost = own if datum.simulator == "contact" and k > 0 and not is_wide else None
-        across = own if is_wide else None
-        yield (
-            ("along", "direction"),
-            Seat(own.origin, simulator.origin, own.direction, simulator.direction, outermost=outermost, across=across),
-        )
+        outermost = own if datum.simulator == "contact" and k > 0 and "height" in own.asked else None
+        across = own if "corners" in own.asked else None
+        places, directions = (own.origin, simulator.origin), (own.direction, simulator.direction)
+        yield asks, Seat(*places, *directions, outermost=outermost, across=across)
 
 
 class PartFeatures:

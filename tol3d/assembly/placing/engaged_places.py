@@ -4,12 +4,13 @@ Poses are about the middle of all places: R p + t with p from the middle in the 
 Arrays have the trial last, with 1 for what trials share.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple, Self
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Engage, Engagement
+from tol3d.assembly.model import Engage, Engagement
 from tol3d.assembly.placing.actual_feature import ActualFeature, mating_size, total
 from tol3d.assembly.placing.poses import Pose, column, cross, dot, rotated
 from tol3d.assembly.placing.world import World
@@ -85,7 +86,7 @@ class _Place:
         return rotated(pose.turn, direction) if moves else direction
 
 
-class PinInHole(_Place):
+class InHole(_Place):
     """An end of a pin in a hole, whose two offsets are across the hole."""
 
     def seen(self, pose: Pose, bolts: Array) -> tuple[Array, list[Seen]]:
@@ -101,8 +102,15 @@ class PinInHole(_Place):
         return self.inner - self.outer, offsets
 
 
-class TabInSlot(PinInHole):
-    """An end of a tab in a slot, whose one offset is across the slot; a tab that leans has more play."""
+@dataclass(frozen=True, eq=False)
+class InSlot(InHole):
+    """An end of a tab or pin in a slot, whose one offset is across the slot; one that leans takes less or more of it.
+
+    Args:
+        share: part of the outer one's half that the slot sees, and its change, by the cosine of their directions.
+    """
+
+    share: Callable[[Array], tuple[Array, Array]]
 
     def seen(self, pose: Pose, bolts: Array) -> tuple[Array, list[Seen]]:
         """Clearance (n,) [mm], and the offset.
@@ -112,23 +120,11 @@ class TabInSlot(PinInHole):
         _, (own,) = super().seen(pose, bolts)
         normal = self._carried(pose, self.axes[0], self.inner_moves)
         other = self._carried(pose, self.other, not self.inner_moves)
-        share, slope = self._share(dot(normal, other))
+        share, slope = self.share(dot(normal, other))
         gain = self.outer * slope  # less of the clearance, by the cosine of both directions
         gain = np.where((own.offset < 0.0) != self.inner_moves, -gain, gain)
         # a turn w of the one that moves changes the cosine by w . (other x normal), or by less that
         return self.inner - self.outer * share, [own._replace(moment=gain * cross(other, normal))]
-
-    def _share(self, along: Array) -> tuple[Array, Array]:
-        """Part of the outer one's half that the slot sees, and its change, by the cosine of their directions."""
-        return np.abs(along), np.where(along > 0.0, 1.0, -1.0)
-
-
-class PinInSlot(TabInSlot):
-    """An end of a pin in a slot, whose one offset is across the slot; a pin that leans takes less of it."""
-
-    def _share(self, along: Array) -> tuple[Array, Array]:
-        share = np.sqrt(np.maximum(1.0 - along * along, 0.0))
-        return share, np.where(share > 0.0, -along / np.where(share > 0.0, share, 1.0), 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +163,7 @@ class BoltInHole(_Place):
         return self.inner - self.outer, offsets
 
 
-EngagedPlace = PinInHole | BoltInHole
+EngagedPlace = InHole | BoltInHole
 
 
 def engaged_places(move: Engage, world: World, origin: Array, middle: Array) -> list[EngagedPlace]:
@@ -200,17 +196,16 @@ def engaged_places(move: Engage, world: World, origin: Array, middle: Array) -> 
             world.on_body(name, move.part) if own_moves else world.placed(name)
             for name, own_moves in ((own.inner, moves), (own.outer, not moves))
         )
-        round_, pin = isinstance(inner.feature.shape, Axis), isinstance(outer.feature.shape, Axis)
-        kind = PinInHole if round_ else PinInSlot if pin else TabInSlot
-        x, y = inner.pose.turn[:, 0], inner.pose.turn[:, 1]
-        own_axes: tuple[Array, ...] = (x, y) if round_ else (inner.direction,)
         half_inner, half_outer = (mating_size(each.feature, world.columns) / 2 for each in (inner, outer))
         for place, its in zip(own.places, own.outer_places, strict=True):
-            points = inner.at(place) if round_ else inner.origin, outer.at(its)
+            points = inner.within(place), outer.at(its)
             moving, fixed = points if moves else points[::-1]
             moving, fixed = moving - column(origin), fixed - column(middle)
-            other = none if round_ else outer.direction
-            found.append(kind(moving, fixed, own_axes, other, half_inner, half_outer, moves))
+            common = moving, fixed, inner.axes
+            if len(inner.axes) == 2:
+                found.append(InHole(*common, none, half_inner, half_outer, moves))
+            else:
+                found.append(InSlot(*common, outer.direction, half_inner, half_outer, moves, outer.seen))
     return found
 
 
@@ -219,16 +214,10 @@ def at_places(
 ) -> list[tuple[list[Array], Array]]:
     """Offsets (one or two) and clearance at each place (n,) or (1,)."""
     inside, outside = mating_size(inner.feature, columns), mating_size(outer.feature, columns)
-    found = []
-    if isinstance(inner.feature.shape, Axis):
-        x, y = inner.pose.turn[:, 0], inner.pose.turn[:, 1]
-        for place, its in zip(own.places, own.outer_places, strict=True):
-            apart = outer.at(its) - inner.at(place)
-            found.append(([dot(x, apart), dot(y, apart)], (inside - outside) / 2))
-        return found
     along = dot(inner.direction, outer.direction)
-    leaning = np.sqrt(np.maximum(1.0 - along * along, 0.0)) if isinstance(outer.feature.shape, Axis) else np.abs(along)
-    for its in own.outer_places:
-        apart = outer.at(its) - inner.origin
-        found.append(([dot(inner.direction, apart)], (inside - outside * leaning) / 2))
+    taken_up = outside if len(inner.axes) == 2 else outside * outer.seen(along)[0]
+    found = []
+    for place, its in zip(own.places, own.outer_places, strict=True):
+        apart = outer.at(its) - inner.within(place)
+        found.append(([dot(axis, apart) for axis in inner.axes], (inside - taken_up) / 2))
     return found

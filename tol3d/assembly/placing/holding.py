@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Axis, Cone, Datum, DatumFrame, Feature, Point
+from tol3d.assembly.model import Assembly, Datum, DatumFrame, Feature
 from tol3d.assembly.placing.actual_feature import nominally
-from tol3d.assembly.placing.asked import Asked, across, direction_rows, frame_in_world, point_rows
+from tol3d.assembly.placing.asked import Asked, frame_in_world, point_rows, rows_of
 from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.seen_motions import sides_of
 from tol3d.numerics.arrays import Array
@@ -148,16 +148,10 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
         return np.concatenate([own for each in features for own in _of_places(each)])
     if len(features) > 1:
         line = features[-1].frame[:3, 3] - at
-        return _line(at, line / np.linalg.norm(line))
-    if isinstance(features[0].shape, Cone):
-        return np.concatenate([_line(at, z), point_rows(at, z[None])])
-    if isinstance(features[0].shape, Axis):
-        return _line(at, z)
-    if isinstance(features[0].shape, Point):
-        return point_rows(at, np.eye(3))
+        return rows_of(("across", "direction"), at, line / np.linalg.norm(line))
     if datum.simulator == "targets" and datum.targets is not None and place > 0:
         return np.concatenate([point_rows(at + frame[:3, :3] @ target, z[None]) for target in datum.targets])
-    return np.concatenate([point_rows(at, z[None]), direction_rows(z)])
+    return rows_of(features[0].shape.asks, at, z)
 
 
 def _of_places(feature: Feature) -> Iterator[Array]:
@@ -172,11 +166,6 @@ def held_by(assembly: Assembly, plan: Placer) -> Freedoms:
     middle = part.pose[:3, 3]
     places = [frame_in_world(assembly, own.name)[:3, 3] for own in part.features]
     return taken(list(plan.asked(assembly, middle)), middle, _reach(np.array(places).reshape(-1, 3) - middle))
-
-
-def _line(at: Array, direction: Array) -> Array:
-    """Rows of a line that stays."""
-    return np.concatenate([point_rows(at, across(direction)), direction_rows(direction)])
 
 
 def _reach(places: Array) -> float:

@@ -4,13 +4,13 @@ That place is where the largest distance is least: cones of a common slack over 
 are made as finite motions until nothing moves.
 """
 
-import math
 from collections.abc import Iterator
+from operator import mul
 from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Cone, Feature, Measured, RoundPlane
+from tol3d.assembly.model import Feature, Measured
 from tol3d.assembly.placing.actual_feature import actual_size
 from tol3d.assembly.placing.gauged_frames import MET, ROUNDS
 from tol3d.assembly.placing.holding import held_by_datums
@@ -29,12 +29,7 @@ SEEN: Final = 1e-6
 
 def judged(feature: Feature) -> tuple[Array, Array]:
     """Places where a feature is judged (places, 3), in its frame [mm], and the directions (directions, 3)."""
-    shape = feature.shape
-    directions = np.eye(3)[shape.located]
-    if not isinstance(shape, RoundPlane):
-        return shape.ends, directions
-    angles = 2.0 * np.pi * np.arange(RIM) / RIM
-    return shape.radius * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1), directions
+    return feature.shape.edge(2.0 * np.pi * np.arange(RIM) / RIM), np.eye(3)[feature.shape.located]
 
 
 def inspected_set(measured: Measured, world: World) -> Array:
@@ -89,19 +84,17 @@ def _offsets(measured: Measured, world: World, pose: Pose) -> Array:
         feature, actual = world.assembly.features[name], world.on_part(name).moved(pose)
         places, directions = judged(feature)
         turn, at = feature.frame[:3, :3], feature.frame[:3, 3]
-        is_axis = isinstance(feature.shape, Axis)
-        points = actual.ends if is_axis else [actual.at(place) for place in places]
-        for place, point in zip(places, points, strict=True):
-            aside = point - column(turn @ place + at)
+        for place in places:
+            aside = actual.at(place) - column(turn @ place + at)
             vector = np.zeros((3 if measured.gauge != "oriented" else 2, world.trials))
             for r, direction in enumerate(directions @ turn.T):
                 vector[r] = dot(column(direction), aside)
             if feature.shape.surface == "plane":
                 vector[0] -= measured.middle
             found.append(vector)
-        if measured.surfaces and isinstance(feature.shape, Cone):
-            start, end = found[-2:]
-            found[-2:] = [own[0] * start + own[1] * end for own in feature.shape.surface_by_axis]
+        if measured.surfaces:
+            ends = found[-len(places) :]
+            found[-len(places) :] = [sum(map(mul, own, ends)) for own in feature.shape.surface_by_axis]
     return np.array(found)
 
 
@@ -111,13 +104,11 @@ def _radii(measured: Measured, world: World, pose: Pose) -> Iterator[Array]:
     for name, bonus in zip(measured.features, each, strict=True):
         feature = world.assembly.features[name]
         own = np.zeros(world.trials) + 0.5 * bonus
-        if measured.surfaces and isinstance(feature.shape, Cone):
+        if measured.surfaces and (by := feature.shape.outward_by) is not None:
             z, nominal = column(feature.frame[:3, 2]), column(feature.frame[:3, 3])
-            inward = math.sin(feature.shape.angle) * dot(z, world.on_part(name).moved(pose).origin - nominal)
-            own = own - np.abs((inward if feature.shape.inner else -inward) - measured.middle)
-        if measured.surfaces and feature.shape.diameter is not None:
-            larger = 0.5 * (actual_size(feature, world.columns) - feature.shape.diameter)
-            own = own - np.abs((-larger if feature.shape.inner else larger) - measured.middle)
+            shift = dot(z, world.on_part(name).moved(pose).origin - nominal)
+            larger = actual_size(feature, world.columns) - (feature.shape.nominal_size or 0.0)
+            own = own - np.abs(by[0] * shift + by[1] * larger - measured.middle)
         yield from [own] * len(judged(feature)[0])
 
 

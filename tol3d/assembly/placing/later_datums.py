@@ -8,12 +8,12 @@ of the sizes of all. A slot closes on its blade from both sides: the largest off
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Datum, DatumFrame, Slot
+from tol3d.assembly.model import Datum, DatumFrame
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.poses import Pose, column, dot
 from tol3d.assembly.placing.seen_motions import SeenMotions, point_row
@@ -23,8 +23,6 @@ from tol3d.numerics.arrays import Array, times
 
 SEEN: Final = 1e-6
 """Change of what is asked by a freedom of length 1 [mm] that is none."""
-
-What = Literal["direction", "aside", "height", "outermost", "target", "corners"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +39,7 @@ class Ask:
     """
 
     feature: str
-    what: What
+    what: str
     nominal: ActualFeature
     reach: float
     target: Array | None = None
@@ -167,15 +165,9 @@ def later_datums(frame: DatumFrame, nominal: Sequence[ActualFeature], seen: Seen
 
 
 def _asks(datum: Datum, own: ActualFeature, reach: float) -> Iterator[Ask]:
-    name, shape = own.feature.name, own.feature.shape
-    if isinstance(shape, Slot):
-        yield Ask(name, "corners", own, reach)
-    elif isinstance(shape, Axis):
-        yield Ask(name, "aside", own, reach)
-        yield Ask(name, "direction", own, reach)
-    elif datum.targets is not None:
-        for target in datum.targets:
-            yield Ask(name, "target", own, reach, target)
-    else:
-        yield Ask(name, "direction", own, reach)
-        yield Ask(name, "outermost" if datum.simulator == "contact" else "height", own, reach)
+    if datum.targets is not None:
+        yield from (Ask(own.feature.name, "target", own, reach, target) for target in datum.targets)
+        return
+    for what in own.asked:
+        outermost = what == "height" and datum.simulator == "contact"
+        yield Ask(own.feature.name, "outermost" if outermost else what, own, reach)

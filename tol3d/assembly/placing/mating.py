@@ -6,11 +6,12 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Cone, Feature, Mate, Relation, Rest
+from tol3d.assembly.model import Assembly, Feature, Mate, Relation, Rest
 from tol3d.assembly.model.cone_seat import cone_seat, unfit_cones
+from tol3d.assembly.model.feature import Asks
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
-from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
-from tol3d.assembly.placing.asked import Asked, across, direction_rows, frame_in_world, point_rows
+from tol3d.assembly.placing.alignment import Alignment, Seat, Tie
+from tol3d.assembly.placing.asked import Asked, frame_in_world, rows_of
 from tol3d.assembly.placing.freedoms import aligned
 from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
@@ -18,7 +19,7 @@ from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
-ASKED: Final[Mapping[tuple[str, str, str], tuple[Held, Turning]]] = {
+ASKED: Final[Mapping[tuple[str, str, str], Asks]] = {
     ("coincident", "plane", "plane"): ("along", "direction"),
     ("distance", "plane", "plane"): ("along", "direction"),
     ("coincident", "point", "plane"): ("along", "none"),
@@ -67,16 +68,12 @@ class Mating(Placer):
         for own in self.move.relations:
             asked = asked_of(own, assembly.features)
             assert asked is not None  # others were refused before
-            held, turning = asked
             moving, target = frame_in_world(assembly, own.moving), frame_in_world(assembly, own.target)
-            at, z = moving[:3, 3] - middle, target[:3, 2]
-            sides = np.eye(3) if held == "all" else z[None] if held == "along" else across(z)
-            rows = [point_rows(at, sides)]
-            if turning == "direction":
-                rows.append(direction_rows(z))
-            elif turning == "level":
-                rows.append(np.hstack([np.zeros(3), np.cross(moving[:3, 2], z)])[None])
-            yield Asked(f"{own.kind}: {own.moving} on {own.target}", np.concatenate(rows))
+            z = target[:3, 2]
+            rows = rows_of(asked, moving[:3, 3] - middle, z)
+            if asked[1] == "level":
+                rows = np.vstack([rows, [*np.zeros(3), *np.cross(moving[:3, 2], z)]])
+            yield Asked(f"{own.kind}: {own.moving} on {own.target}", rows)
 
 
 def mating(move: Mate, nominal: World) -> Mating:
@@ -99,7 +96,7 @@ def mating(move: Mate, nominal: World) -> Mating:
     return Mating(move, alignment, signs)
 
 
-def asked_of(relation: Relation, features: Mapping[str, Feature]) -> tuple[Held, Turning] | None:
+def asked_of(relation: Relation, features: Mapping[str, Feature]) -> Asks | None:
     """Constraint by a relation; None if it has none for its two features."""
     words = features[relation.moving].shape.surface, features[relation.target].shape.surface
     found = ASKED.get((relation.kind, *words))
@@ -119,10 +116,8 @@ def _tie(move: Mate, relation: Relation, world: World) -> Tie:
         raise InputError(f"{name}: expected {expected}, got {moving.surface} on {target.surface}")
     if relation.kind == "tangent" and moving.diameter is None:
         raise InputError(f"{name}: expected a diameter of {relation.moving}, got an axis without one")
-    if asked == ("all", "direction") and isinstance(moving, Cone) and isinstance(target, Cone):
-        words = unfit_cones(moving, target, _sign(move, relation, world))
-        if words:
-            raise InputError(f"{name}: {words}")
+    if asked == ("all", "direction") and (words := unfit_cones(moving, target, _sign(move, relation, world))):
+        raise InputError(f"{name}: {words}")
     return Tie(name, *asked)
 
 
@@ -148,10 +143,7 @@ def _seat(move: Mate, relation: Relation, sign: float, world: World) -> Seat:
 
 def _seated(moving: ActualFeature, target: ActualFeature, sign: float, world: World) -> Array:
     """Height of a cone over the one in which it lies, or that lies in it (n,) or (1,) [mm]."""
-    shapes = moving.feature.shape, target.feature.shape
-    assert isinstance(shapes[0], Cone)
-    assert isinstance(shapes[1], Cone)
-    seat = cone_seat(shapes[0], shapes[1], sign)
+    seat = cone_seat(moving.feature.shape, target.feature.shape, sign)
     assert seat is not None, "refused before"
     own, its = (total(each.feature.moved_by, 5, world.columns)[4] for each in (moving, target))
     return np.asarray(seat.height + seat.by_moving * own + seat.by_target * its)

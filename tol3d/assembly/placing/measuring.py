@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Measured, RoundPlane
+from tol3d.assembly.model import Assembly, Measured
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.gauged_positions import on_gauges
@@ -210,18 +210,12 @@ def position(measured: Measured, world: World) -> Array:
         return position_in_room(measured, world, actual, into, _bonus(measured, world))
     if measured.over_gauges:
         return on_gauges(measured, world, [_bonus(measured, world)])
-    shape, z = actual.feature.shape, column(frame[:3, 2])
-    if isinstance(shape, RoundPlane) and measured.direction is None:
-        return 2.0 * (np.abs(dot(z, actual.origin - column(frame[:3, 3]))) + actual.rise(z))
-    nominal = [column(frame[:3, :3] @ end + frame[:3, 3]) for end in shape.ends]
+    if measured.direction is None:
+        return 2.0 * actual.farthest(frame) - _bonus(measured, world)
     largest = np.zeros(1)
-    for end, its_nominal in zip(actual.ends, nominal, strict=True):
-        aside = end - its_nominal
-        if measured.direction is not None:
-            aside = square_to(aside, column(measured.direction))
-        else:
-            aside = actual.counted(aside, z)
-        largest = np.maximum(largest, length(aside))
+    for end, nominal in zip(actual.ends, actual.feature.shape.ends, strict=True):
+        aside = end - column(frame[:3, :3] @ nominal + frame[:3, 3])
+        largest = np.maximum(largest, length(square_to(aside, column(measured.direction))))
     return 2.0 * largest - _bonus(measured, world)
 
 

@@ -11,8 +11,9 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.assembly.model.feature import Asks, Held
 from tol3d.assembly.placing.actual_feature import ActualFeature
-from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
+from tol3d.assembly.placing.alignment import Alignment, Seat, Tie
 from tol3d.assembly.placing.freedoms import aligned
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, column, cross, dot, full, moved_about, rotated_back
 from tol3d.errors import InputError
@@ -87,7 +88,7 @@ class Pattern(SeenMotions):
         directions: of each tie (ties, 3).
     """
 
-    ties: tuple[tuple[Held, Turning], ...]
+    ties: tuple[Asks, ...]
     centre: Array
     directions: Array
 
@@ -170,7 +171,7 @@ def pattern(name: str, ties: Sequence[Tie], seats: Sequence[Seat], nominal: Sequ
     parallel = shifts.shape[1] < 1 or bool(np.linalg.norm(np.cross(shifts.T, along)) < HELD)
     held: dict[tuple[int, int], Held] = {(0, 0): "all", (1, 0): "all", (0, 1): "across", (1, 1): "across"}
     if (turns, shifts.shape[1]) == (1, 2) and np.abs(along @ shifts).max() < HELD:
-        asked: list[tuple[Held, Turning]] = [("along", "direction")]
+        asked: list[Asks] = [("along", "direction")]
     elif (turns, shifts.shape[1]) in held and parallel:
         asked = [(held[turns, shifts.shape[1]], "direction")]
     else:

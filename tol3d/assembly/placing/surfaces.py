@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import RoundPlane, Shape
+from tol3d.assembly.model import Shape
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.poses import NO_LENGTH, cross, dot, unit
 from tol3d.numerics.arrays import Array
@@ -75,6 +75,18 @@ def _stretch(middle: Array, half: Array, reach: Array | float) -> tuple[Array, A
     return np.maximum(-1.0, np.minimum(*bounds)), np.minimum(1.0, np.maximum(*bounds))
 
 
+def _crossing(middle: Array, half: Array, reach: float) -> tuple[Array, Array]:
+    """From where to where an axis is within a reach, by one coordinate or two together (n,), (n,); see `over`."""
+    if len(middle) == 1:
+        return _stretch(middle[0], half[0], reach)
+    square = half[0] * half[0] + half[1] * half[1]
+    nearest = -(middle[0] * half[0] + middle[1] * half[1]) / np.where(square == 0.0, NO_LENGTH, square)
+    x, y = middle + nearest * half
+    beside = reach**2 - x * x - y * y
+    low, high = _stretch(-nearest, np.ones(1), np.sqrt(np.maximum(beside / np.maximum(square, NO_LENGTH), 0.0)))
+    return np.where(beside < 0.0, np.inf, low), high
+
+
 def over(plane: Shape, middle: Array, half: Array) -> tuple[Array, Array]:
     """From where to where an axis, -1 to 1 from end to end, is over a plane (n,), (n,); all of it if it is nowhere.
 
@@ -83,16 +95,8 @@ def over(plane: Shape, middle: Array, half: Array) -> tuple[Array, Array]:
         middle: the axis' middle along x and y of the plane (2, n) [mm].
         half: from there to its end at 1 (2, n) [mm].
     """
-    if isinstance(plane, RoundPlane):
-        square = half[0] * half[0] + half[1] * half[1]
-        nearest = -(middle[0] * half[0] + middle[1] * half[1]) / np.where(square == 0.0, NO_LENGTH, square)
-        x, y = middle + nearest * half
-        beside = plane.radius**2 - x * x - y * y
-        low, high = _stretch(-nearest, np.ones(1), np.sqrt(np.maximum(beside / np.maximum(square, NO_LENGTH), 0.0)))
-        low = np.where(beside < 0.0, np.inf, low)
-    else:
-        (low, high), other = (_stretch(*own) for own in zip(middle, half, plane.reach, strict=True))
-        low, high = np.maximum(low, other[0]), np.minimum(high, other[1])
+    starts, ends = zip(*(_crossing(middle[k], half[k], reach) for k, reach in plane.limits), strict=True)
+    low, high = np.maximum.reduce(starts), np.minimum.reduce(ends)
     return np.where(low <= high, low, -1.0), np.where(low <= high, high, 1.0)
 
 

@@ -1,12 +1,14 @@
 """Closed surfaces that represent features stated by numbers: slabs, rods, rings, octahedra."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import singledispatch
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Plane, Point, RoundPlane, Shape, Slot
+from tol3d.assembly.model import Assembly, Axis, Cone, Feature, RoundPlane, Slot
+from tol3d.assembly.model.feature import Facts, Flat
 from tol3d.assembly.model.measures import Measured
 from tol3d.numerics.arrays import Array
 
@@ -14,11 +16,13 @@ Surface = tuple[Array, NDArray[np.int64]]
 
 SIDES = 48
 """Sides of a round surface."""
+ANGLES: Final = 2 * np.pi * np.arange(SIDES) / SIDES
 WALL = 0.35
 """Thickness of marks across the surface of solids over that of other symbols."""
 
 
-def symbol(shape: Shape, thickness: float) -> Surface:
+@singledispatch
+def symbol(shape: Facts, thickness: float) -> Surface:
     """Symbol of a feature, in its frame: vertices (n, 3) [mm], triangles (m, 3).
 
     Args:
@@ -27,36 +31,41 @@ def symbol(shape: Shape, thickness: float) -> Surface:
             a sphere a ball, a socket the zone of a shell between 45 degrees of latitude.
         thickness: of shapes that have none of their own [mm].
     """
-    match shape:
-        case Point(diameter=float(diameter)):
-            return zone(diameter / 2, diameter / 2 + thickness) if shape.inner else ball(diameter / 2)
-        case Point():
-            corners = thickness * np.concatenate([np.eye(3), -np.eye(3)])
-            faces = [(a, b, c) for a in (0, 3) for b in (1, 4) for c in (2, 5)]
-            return corners, np.array([_outward(corners, face) for face in faces])
-        case Slot():
-            a, b = shape.reach
-            outline, half = np.array([(-a, -b), (a, -b), (a, b), (-a, b)]), shape.width / 2
-            if not shape.inner:
-                return prism(outline, -half, half)
-            return together([prism(outline, half, half + thickness), prism(outline, -half - thickness, -half)])
-        case Plane():
-            a, b = shape.reach
-            outline = np.array([(-a, -b), (a, -b), (a, b), (-a, b)])
-            return prism(outline, -thickness, 0.0)
-        case RoundPlane():
-            return prism(circle(shape.radius), -thickness, 0.0)
-        case Cone(length=length, inner=inner, diameters=(start, end)):
-            return frustum(start / 2, end / 2, length, thickness if inner else 0.0)
-        case Axis():
-            half = shape.length / 2
-            radius = thickness / 4 if shape.diameter is None else shape.diameter / 2
-            if shape.inner:
-                return ring(radius, radius + thickness, -half, half)
-            return prism(circle(radius), -half, half)
+    if shape.diameter is not None:
+        return zone(shape.diameter / 2, shape.diameter / 2 + thickness) if shape.inner else ball(shape.diameter / 2)
+    corners = thickness * np.concatenate([np.eye(3), -np.eye(3)])
+    faces = [(a, b, c) for a in (0, 3) for b in (1, 4) for c in (2, 5)]
+    return corners, np.array([_outward(corners, face) for face in faces])
 
 
-def mark(shape: Shape, thickness: float) -> Surface:
+@symbol.register
+def _(shape: Flat, thickness: float) -> Surface:
+    return prism(shape.edge(ANGLES)[:, :2], -thickness, 0.0)
+
+
+@symbol.register
+def _(shape: Slot, thickness: float) -> Surface:
+    outline, half = shape.ends[:, :2], shape.width / 2
+    if not shape.inner:
+        return prism(outline, -half, half)
+    return together([prism(outline, half, half + thickness), prism(outline, -half - thickness, -half)])
+
+
+@symbol.register
+def _(shape: Axis, thickness: float) -> Surface:
+    half = shape.length / 2
+    radius = thickness / 4 if shape.diameter is None else shape.diameter / 2
+    return ring(radius, radius + thickness, -half, half) if shape.inner else prism(circle(radius), -half, half)
+
+
+@symbol.register
+def _(shape: Cone, thickness: float) -> Surface:
+    start, end = shape.diameters
+    return frustum(start / 2, end / 2, shape.length, thickness if shape.inner else 0.0)
+
+
+@singledispatch
+def mark(shape: Facts, thickness: float) -> Surface:
     """Mark of a feature on the solid of its part, in its frame: thin, astride of the surface.
 
     Args:
@@ -64,25 +73,39 @@ def mark(shape: Shape, thickness: float) -> Surface:
             pin a little thicker than it is, a ball its equator; others as by `symbol`.
         thickness: of a symbol [mm].
     """
+    if shape.diameter is None or shape.inner:  # a sphere need not be a face: a pitch sphere, for instance
+        return symbol(shape, thickness)
     half = WALL * thickness / 2
-    match shape:
-        case Point(diameter=float(diameter), inner=False):  # it need not be a face: a pitch sphere, for instance
-            return ring(diameter / 2 - half, diameter / 2 + half, -half, half)
-        case Slot():
-            heights = -shape.width / 2, shape.width / 2
-            return together([edges(shape.reach, thickness, own - half, own + half) for own in heights])
-        case Plane():
-            return edges(shape.reach, thickness, -half, half)
-        case RoundPlane():
-            return ring(max(shape.radius - thickness, shape.radius / 2), shape.radius, -half, half)
-        case Cone(length=length, diameters=(start, end)):
-            return frustum(start / 2 - half, end / 2 - half, length, 2 * half)
-        case Axis(diameter=float(diameter)):
-            end = shape.length / 2
-            if not shape.inner:
-                return prism(circle(diameter / 2 + half), -end, end)
-            return ring(max(diameter / 2 - half, diameter / 4), diameter / 2 + half, -end, end)
-    return symbol(shape, thickness)
+    return ring(shape.diameter / 2 - half, shape.diameter / 2 + half, -half, half)
+
+
+@mark.register
+def _(shape: Flat, thickness: float) -> Surface:
+    half, walls = WALL * thickness / 2, (0.0,) if shape.nominal_size is None else (-0.5, 0.5)
+    heights = [(shape.nominal_size or 0.0) * own for own in walls]
+    return together([edges(shape.reach, thickness, own - half, own + half) for own in heights])
+
+
+@mark.register
+def _(shape: RoundPlane, thickness: float) -> Surface:
+    half = WALL * thickness / 2
+    return ring(max(shape.radius - thickness, shape.radius / 2), shape.radius, -half, half)
+
+
+@mark.register
+def _(shape: Axis, thickness: float) -> Surface:
+    if shape.diameter is None:
+        return symbol(shape, thickness)
+    half, radius, end = WALL * thickness / 2, shape.diameter / 2, shape.length / 2
+    if not shape.inner:
+        return prism(circle(radius + half), -end, end)
+    return ring(max(radius - half, radius / 2), radius + half, -end, end)
+
+
+@mark.register
+def _(shape: Cone, thickness: float) -> Surface:
+    half, (start, end) = WALL * thickness / 2, shape.diameters
+    return frustum(start / 2 - half, end / 2 - half, shape.length, 2 * half)
 
 
 def edges(reach: tuple[float, float], width: float, low: float, high: float) -> Surface:
@@ -110,8 +133,7 @@ def together(surfaces: Sequence[Surface]) -> Surface:
 
 def circle(radius: float) -> Array:
     """A circle's corners (SIDES, 2), counter-clockwise [mm]."""
-    angles = 2 * np.pi * np.arange(SIDES) / SIDES
-    return radius * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    return radius * np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=-1)
 
 
 def prism(outline: Array, low: float, high: float) -> Surface:

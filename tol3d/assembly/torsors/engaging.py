@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Bolt, Engage, Engagement, Floating, Mate
+from tol3d.assembly.model import Bolt, Engage, Engagement, Floating, Mate
 from tol3d.assembly.torsors.columns import without_rounding
+from tol3d.assembly.torsors.gauges import counted
 from tol3d.assembly.torsors.mating import freedoms_after
 from tol3d.assembly.torsors.room import Room
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, shift_at
@@ -103,8 +104,7 @@ def _bolted(own: Engagement, bolt: Bolt, world: World, part: str) -> Sequence[tu
 def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, Array, Array, Array]]:
     """Rows (2, 6) of the part's torsor, offsets (2, columns), clearance (columns,) of each place; none for a bolt."""
     frame, features = world.frame(own.inner), world.assembly.features
-    round_ = isinstance(features[own.inner].shape, Axis)
-    directions = frame[:3, :2].T if round_ else np.array([frame[:3, 2], np.zeros(3)])
+    directions = counted(frame, features[own.inner].shape)
     relative = world.placed(own.outer) - world.placed(own.inner)
     sign = 1.0 if world.is_of_body(own.outer, part) else -1.0
     inner, outer = (features[name].shape.nominal_size or 0.0 for name in (own.inner, own.outer))
@@ -123,10 +123,9 @@ def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, A
 
 def _leaning(own: Engagement, world: World) -> float:
     """Factor of the inner feature's size in the width that it takes in a slot where it leans nominally; 1 in a hole."""
-    if isinstance(world.assembly.features[own.inner].shape, Axis):
-        return 1.0
-    along = float(world.axis(own.inner) @ world.axis(own.outer))
-    return max(1.0 - along**2, 0.0) ** 0.5 if isinstance(world.assembly.features[own.outer].shape, Axis) else abs(along)
+    inner, outer = (world.assembly.features[name].shape.located for name in (own.inner, own.outer))
+    along = world.frame(own.inner)[:3, inner].T @ world.frame(own.outer)[:3, outer]
+    return float(np.linalg.norm(along)) if len(along) == 1 else 1.0
 
 
 def _push(move: Engage, world: World) -> Array:

@@ -1,23 +1,12 @@
 """Torsors of a part's features and datum frames, in the part's frame."""
 
 from collections.abc import Sequence
+from functools import singledispatch
 
 import numpy as np
 
-from tol3d.assembly.model import (
-    Axis,
-    Cone,
-    Contribution,
-    Datum,
-    DatumFrame,
-    Feature,
-    Part,
-    Plane,
-    Point,
-    RoundPlane,
-    Slot,
-)
-from tol3d.assembly.model.feature import Shape
+from tol3d.assembly.model import Axis, Contribution, Datum, DatumFrame, Feature, Part, Slot
+from tol3d.assembly.model.feature import Facts, Flat
 from tol3d.assembly.torsors.columns import Columns
 from tol3d.assembly.torsors.freedoms import Freedoms
 from tol3d.assembly.torsors.gauges import GaugesRoom, gauges_room
@@ -70,47 +59,51 @@ def _without_any(datums: Sequence[Sequence[Displaced]], columns: Columns) -> Fre
 
 def _take(freedoms: Freedoms, datum: Datum, features: Sequence[Displaced], columns: Columns) -> None:
     """Take what a datum holds, and the turn to it, about its centre: of several the middle of theirs."""
-    (feature, torsor), *others = features
     if datum.simulator == "pattern":
         _take_pattern(freedoms, features)
-    elif others:
+    elif len(features) > 1:
         _take_line(freedoms, features)
     else:
-        _take_one(freedoms, datum, feature, torsor, columns)
+        _take_one(features[0][0].shape, freedoms, datum, features[0], columns)
     freedoms.settle(np.mean([own.frame[:3, 3] for own, _ in features], axis=0))
 
 
-def _take_one(freedoms: Freedoms, datum: Datum, feature: Feature, torsor: Array, columns: Columns) -> None:
-    match feature.shape:
-        case Slot() as slot:
-            _take_slot(freedoms, slot, feature.frame, torsor)
-        case Plane() | RoundPlane():
-            _take_plane(freedoms, datum, feature, torsor, columns)
-        case Axis() as axis:
-            _take_axis(freedoms, feature.frame[:3, 3], feature.frame[:3, :2].T, torsor, whole=isinstance(axis, Cone))
-        case Point():
-            position = shift_at(feature.frame[:3, 3])
-            freedoms.take(position, position @ torsor)
+@singledispatch
+def _take_one(shape: Facts, freedoms: Freedoms, datum: Datum, displaced: Displaced, columns: Columns) -> None:
+    """Take what a datum of one feature holds, by its shape; here a point."""
+    feature, torsor = displaced
+    position = shift_at(feature.frame[:3, 3])
+    freedoms.take(position, position @ torsor)
 
 
-def _take_slot(freedoms: Freedoms, slot: Slot, frame: Array, torsor: Array) -> None:
+@_take_one.register
+def _(shape: Axis, freedoms: Freedoms, datum: Datum, displaced: Displaced, columns: Columns) -> None:
+    feature, torsor = displaced
+    _take_axis(freedoms, feature.frame[:3, 3], feature.frame[:3, :2].T, torsor, whole="along" in shape.components)
+
+
+@_take_one.register
+def _(shape: Slot, freedoms: Freedoms, datum: Datum, displaced: Displaced, columns: Columns) -> None:
     """The median plane of a slot or tab, on which walls close in about its nominal place.
 
     They leave the smallest of |height of its middle| + |rise along x| + |rise along y|, that of its corners. Where one
     motion alone is left, which moves all three in proportion, the one that it moves most becomes 0: the height, or the
     rises together. Otherwise its direction is met by turns, then its height.
     """
+    frame, torsor = displaced[0].frame, displaced[1]
     height = height_at(frame[:3, 3], frame[:3, 2])
     turns = turn_about(frame[:3, :2].T)
     moved = np.concatenate([height, turns]) @ freedoms.left
     about_x, about_y = np.abs(moved[1:]).max(axis=1, initial=0.0)
-    by_place = np.abs(moved[0]).max(initial=0.0) > slot.reach[1] * about_x + slot.reach[0] * about_y - NEARER
+    by_place = np.abs(moved[0]).max(initial=0.0) > shape.reach[1] * about_x + shape.reach[0] * about_y - NEARER
     order = (height, turns) if by_place and np.linalg.matrix_rank(moved, tol=NEARER) == 1 else (turns, height)
     for equations in order:
         freedoms.take(equations, equations @ torsor)
 
 
-def _take_plane(freedoms: Freedoms, datum: Datum, feature: Feature, torsor: Array, columns: Columns) -> None:
+@_take_one.register
+def _(shape: Flat, freedoms: Freedoms, datum: Datum, displaced: Displaced, columns: Columns) -> None:
+    feature, torsor = displaced
     normal, centre = feature.frame[:3, 2], feature.frame[:3, 3]
     if datum.simulator == "targets" and datum.targets is not None:
         for target in datum.targets:
@@ -124,23 +117,20 @@ def _take_plane(freedoms: Freedoms, datum: Datum, feature: Feature, torsor: Arra
         return
     values = height @ torsor
     if datum.simulator == "contact":
-        values = values + _outermost(feature, turns @ (torsor - freedoms.torsor), columns)
+        values = values + _outermost(shape, turns @ (torsor - freedoms.torsor), columns)
     freedoms.take(height, values)
 
 
-def _outermost(feature: Feature, tilt: Array, columns: Columns) -> Array:
-    """Height of a tilted plane's outermost corner over the centre, out of the material (columns,).
+def _outermost(shape: Flat, tilt: Array, columns: Columns) -> Array:
+    """Height of a tilted plane's outermost point over the centre, out of the material (columns,).
 
     Args:
-        feature: the plane.
+        shape: of the plane.
         tilt: turns about its x and y (2, columns), from the plane that it touches to itself.
-        columns: extended by the maximum over its corners.
+        columns: extended by the maximum over its corners or rim.
     """
-    about_x, about_y = tilt
-    if isinstance(feature.shape, RoundPlane):
-        return columns.largest(feature.shape.radius * tilt[None])
-    along_x, along_y = feature.shape.reach  # opposite corners stand out and in by the same amount
-    return columns.largest(np.array([[along_y * about_x - along_x * about_y], [along_y * about_x + along_x * about_y]]))
+    rises = np.array([-shape.reach[0] * tilt[1], shape.reach[1] * tilt[0]])
+    return columns.largest(shape.rim @ rises)
 
 
 def _take_axis(freedoms: Freedoms, centre: Array, across: Array, torsor: Array, *, whole: bool = False) -> None:
@@ -205,7 +195,9 @@ class PartTorsors:
         It is not cached: most are needed once, and those of thousands of features would fill the memory.
         """
         feature = self._features[name]
-        own = from_components(feature.shape) @ summed(feature.moved_by, len(feature.shape.components), self._columns)
+        shape = feature.shape
+        own = np.vstack([shape.origin_by, shape.turn_by])  # of its components: its torsor, in its frame
+        own = own @ summed(feature.moved_by, len(shape.components), self._columns)
         own[:3] += summed(feature.grown_by, 3, self._columns)
         return self.datum_frame(feature.parent) + seen_from(feature.frame) @ own
 
@@ -261,27 +253,3 @@ def summed(contributions: Sequence[Contribution], components: int, columns: Colu
     for contribution in contributions:
         total[:, contribution.columns] += contribution.matrix
     return total
-
-
-def from_components(shape: Shape) -> Array:
-    """(6, components): the components of a shape -> its torsor, in the feature's frame.
-
-    A plane's height is w + alpha y - beta x, with its rises at the ends of x and y; an axis passes both its ends.
-    """
-    match shape:
-        case Point():
-            return np.eye(6)[:, :3]
-        case Plane() | RoundPlane():
-            along_x, along_y = shape.reach
-            torsor = np.zeros((6, 3))
-            torsor[2, 0] = 1.0
-            torsor[3, 2] = 1.0 / along_y
-            torsor[4, 1] = -1.0 / along_x
-            return torsor
-        case Axis():
-            torsor = np.zeros((6, len(shape.components)))
-            torsor[[0, 1], [0, 1]] = torsor[[0, 1], [2, 3]] = 0.5
-            torsor[4, [0, 2]] = -1.0 / shape.length, 1.0 / shape.length
-            torsor[3, [1, 3]] = 1.0 / shape.length, -1.0 / shape.length
-            torsor[2, 4:] = 1.0  # of a cone, along
-            return torsor

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.assembly.model import Datum, Feature, Floating
+from tol3d.assembly.model import Datum, Feature, Floating, Shape
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.freedoms import Freedoms
@@ -81,7 +81,7 @@ def gauges_room(
     to_torsor[3:, 3:] /= reach
     ways, offsets, clearances = [], [], []
     for room, (feature, torsor) in zip(rooms, datums, strict=True):
-        nominal, directions = feature.shape.nominal_size or 0.0, _directions(feature)
+        nominal, directions = feature.shape.nominal_size or 0.0, counted(feature.frame, feature.shape)
         over = size(room.feature) + columns.constants(np.array([nominal - room.virtual]))[0]
         for end in feature.shape.ends:
             rows = directions @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3])
@@ -91,7 +91,8 @@ def gauges_room(
     free = np.linalg.qr(np.linalg.solve(to_torsor, left))[0]
     for _, feature, _ in later:
         for end in feature.shape.ends:
-            ways.append(_directions(feature) @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3]) @ to_torsor)
+            place = feature.frame[:3, :3] @ end + feature.frame[:3, 3]
+            ways.append(counted(feature.frame, feature.shape) @ shift_at(place) @ to_torsor)
     whole = np.array(ways) @ free
     _, strengths, right = np.linalg.svd(whole.reshape(2 * len(whole), free.shape[1]))
     seen = right[: int(np.sum(strengths > SEEN))].T
@@ -112,7 +113,7 @@ def _least(seen: Array, unseen: Array, reach: float) -> Array:
     return np.asarray(seen + unseen @ amounts, dtype=np.float64)
 
 
-def _directions(feature: Feature) -> Array:
-    """Directions (2, 3) in which the ends of a feature count; of a plane or slot its normal, and none."""
-    sides = feature.frame[:3, feature.shape.located].T
+def counted(frame: Array, shape: Shape) -> Array:
+    """Directions (2, 3) in which the ends of a feature in a frame count; of a plane or slot its normal, and none."""
+    sides = frame[:3, shape.located].T
     return np.concatenate([sides, np.zeros((2 - len(sides), 3))])

@@ -1,12 +1,11 @@
 """A set of features against their nominal places to first order: in a datum frame, or at the best place of the set."""
 
-import math
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Cone, Measured, RoundPlane
+from tol3d.assembly.model import Measured
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.measures import clipped
 from tol3d.assembly.torsors.room import Cones
@@ -64,22 +63,16 @@ def inspected_set(measured: Measured, world: World) -> Array:
         bonus = 0.5 * clipped(measured.bonuses[k], name, world) if measured.bonuses else np.zeros(world.columns.count)
         feature = world.assembly.features[name]
         shape, turn, at = feature.shape, feature.frame[:3, :3], feature.frame[:3, 3]
-        points, directions = shape.ends, turn[:, shape.located].T
-        if isinstance(shape, RoundPlane):
-            angles = np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)
-            points = shape.radius * np.array([np.cos(angles), np.sin(angles), np.zeros(AROUND)]).T
+        points, directions = shape.edge(np.linspace(0.0, 2.0 * np.pi, AROUND, endpoint=False)), turn[:, shape.located].T
         directions = np.concatenate([directions, np.zeros((size - len(directions), 3))])
         torsor = world.own[part].feature(name) - frame
         off = np.zeros((size, world.columns.count))
         if shape.surface == "plane":
             off[0, world.columns.constant] = measured.middle
         beside = np.zeros(world.columns.count)
-        if measured.surfaces and shape.diameter is not None:
-            beside = (-0.5 if shape.inner else 0.5) * world.size(name)
-            beside[world.columns.constant] -= measured.middle
         own_ways = [directions @ shift_at(turn @ point + at) for point in points]
-        if measured.surfaces and isinstance(shape, Cone):
-            beside = (1.0 if shape.inner else -1.0) * math.sin(shape.angle) * (height_at(at, turn[:, 2]) @ torsor)[0]
+        if measured.surfaces and (by := shape.outward_by) is not None:
+            beside = by[0] * (height_at(at, turn[:, 2]) @ torsor)[0] + by[1] * world.size(name)
             beside[world.columns.constant] -= measured.middle
             own_ways = list(np.einsum("ij,jkl->ikl", shape.surface_by_axis, own_ways))
         for point, way in zip(points, own_ways, strict=True):

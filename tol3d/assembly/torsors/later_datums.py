@@ -6,11 +6,13 @@ room; what it has taken stays.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import singledispatch
 from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Datum, Feature, RoundPlane, Slot
+from tol3d.assembly.model import Datum, Feature, Slot
+from tol3d.assembly.model.feature import Facts, Flat
 from tol3d.assembly.torsors.room import Room, changes, least_slack
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import height_at, ordered_product, shift_at, turn_about
@@ -28,10 +30,9 @@ class Ask:
 
     Args:
         forms: what it lacks (places * 2, columns) [mm], then heights of corners over the centre (corners, columns), of
-            which the largest amount counts as well; of a round face two, at right angles.
+            which the largest length of one counts as well.
         rows: its change by the freedoms (places, 2, freedoms).
-        corners: that of the corners (corners, freedoms).
-        is_round: whether the corners are those two.
+        corners: that of the corners (corners, numbers, freedoms).
         open: what earlier asks leave of the freedoms (freedoms, open), orthonormal.
         held: projector to what it takes of these (open, open).
     """
@@ -39,7 +40,6 @@ class Ask:
     forms: Array
     rows: Array
     corners: Array
-    is_round: bool
     open: Array
     held: Array
 
@@ -48,8 +48,9 @@ class Ask:
         places = len(self.rows)
         found = read[: 2 * places].reshape(places, 2, -1) + changes(self.rows, steps)
         if len(self.corners):
-            tops = read[2 * places :] + ordered_product(self.corners, steps)
-            found[0, 0] += np.hypot(tops[0], tops[1]) if self.is_round else np.abs(tops).max(axis=0)
+            count, numbers, freedoms = self.corners.shape
+            tops = read[2 * places :] + ordered_product(self.corners.reshape(-1, freedoms), steps)
+            found[0, 0] += np.abs(np.hypot.reduce(tops.reshape(count, numbers, -1), axis=1)).max(axis=0)
         return found
 
 
@@ -144,15 +145,14 @@ def later_datums(
     left, asks = np.eye(motions.shape[1]), list[Ask]()
     for datum, feature, torsor in datums:
         count = len(asks)
-        for equations, corners in _asked(datum, feature, reach):
+        for equations, corners in _asked(feature.shape, datum, feature.frame, reach):
             rows = equations @ motions
             _, sizes, right = np.linalg.svd((rows @ left).reshape(2 * len(rows), left.shape[1]))
             rank = int(np.sum(sizes > SEEN))
             if rank:
-                lacks = np.concatenate([*(equations @ (torsor - rest)), corners @ (torsor - rest)])
-                is_round = isinstance(feature.shape, RoundPlane)
+                lacks = np.concatenate([*(equations @ (torsor - rest)), corners.reshape(-1, 6) @ (torsor - rest)])
                 held = right[:rank].T @ right[:rank]
-                asks.append(Ask(lacks, rows, corners @ motions, is_round, left, held))
+                asks.append(Ask(lacks, rows, corners @ motions, left, held))
                 left = left @ right[rank:].T
         if len(asks) == count:
             raise InputError(
@@ -162,23 +162,35 @@ def later_datums(
     return LaterDatums(tuple(asks), left)
 
 
-def _asked(datum: Datum, feature: Feature, reach: float) -> list[tuple[Array, Array]]:
-    """Equations (places, 2, 6) of each thing that a datum asks, and rises of corners beside it (corners, 6)."""
-    frame, shape, none = feature.frame, feature.shape, np.zeros((0, 6))
+NO_CORNERS: Final = np.zeros((0, 1, 6))
+
+
+@singledispatch
+def _asked(shape: Facts, datum: Datum, frame: Array, reach: float) -> list[tuple[Array, Array]]:
+    """Equations (places, 2, 6) of each thing that a datum asks, and rises of corners beside it (corners, numbers, 6).
+
+    By its shape; here an axis.
+    """
+    aside = (frame[:3, :2].T @ shift_at(frame[:3, 3]))[None]
+    return [(aside, NO_CORNERS), (reach * turn_about(frame[:3, :2].T)[None], NO_CORNERS)]
+
+
+@_asked.register
+def _(shape: Slot, datum: Datum, frame: Array, reach: float) -> list[tuple[Array, Array]]:
+    places = [frame[:3, :3] @ end + frame[:3, 3] for end in shape.ends]
+    return [(np.stack([_alone(height_at(place, frame[:3, 2])) for place in places]), NO_CORNERS)]
+
+
+@_asked.register
+def _(shape: Flat, datum: Datum, frame: Array, reach: float) -> list[tuple[Array, Array]]:
     centre, (x, y, z) = frame[:3, 3], frame[:3, :3].T
-    direction = reach * turn_about(frame[:3, :2].T)[None]
-    if isinstance(shape, Slot):
-        return [(np.stack([_alone(height_at(frame[:3, :3] @ end + centre, z)) for end in shape.ends]), none)]
-    if isinstance(shape, Axis):
-        return [((frame[:3, :2].T @ shift_at(centre))[None], none), (direction, none)]
     if datum.targets is not None:
-        return [(_alone(height_at(frame[:3, :3] @ own + centre, z))[None], none) for own in datum.targets]
-    height, corners = height_at(centre, z), none
+        return [(_alone(height_at(frame[:3, :3] @ own + centre, z))[None], NO_CORNERS) for own in datum.targets]
+    height, corners = height_at(centre, z), NO_CORNERS
     if datum.simulator == "contact":
-        a, b = shape.reach
-        ways = (a * x, b * y) if isinstance(shape, RoundPlane) else (a * x + b * y, a * x - b * y)
-        corners = np.concatenate([np.atleast_2d(height_at(centre + own, z) - height) for own in ways])
-    return [(direction, none), (_alone(height)[None], corners)]
+        ways = shape.rim @ np.array([shape.reach[0] * x, shape.reach[1] * y])
+        corners = np.array([[(height_at(centre + own, z) - height).reshape(6) for own in some] for some in ways])
+    return [(reach * turn_about(frame[:3, :2].T)[None], NO_CORNERS), (_alone(height)[None], corners)]
 
 
 def _alone(row: Array) -> Array:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tol3d.assembly.model import Cone, Locate, Mate, Pair, Relation, Rest
+from tol3d.assembly.model import Locate, Mate, Pair, Relation, Rest
 from tol3d.assembly.model.cone_seat import cone_seat
 from tol3d.assembly.torsors.features import summed
 from tol3d.assembly.torsors.freedoms import Freedoms, freedom_in_words
@@ -114,8 +114,6 @@ class _Pairing:
         """The moving cone in the target's, or about it: on its axis, at the height at which their surfaces meet."""
         features = self._world.assembly.features
         own, its = (features[name] for name in (self._relation.moving, self._relation.target))
-        assert isinstance(own.shape, Cone)
-        assert isinstance(its.shape, Cone)
         seat = cone_seat(own.shape, its.shape, float(np.sign(self._axis @ self.target_axis)))
         assert seat is not None, "refused before"
         directions = np.vstack([perpendicular(self.target_axis), self.target_axis])

@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from tol3d.assembly.model import Measured, RoundPlane
+from tol3d.assembly.model import Measured
 from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
@@ -187,8 +187,8 @@ def position(measured: Measured, world: World) -> Array:
     feature = world.assembly.features[measured.features[0]]
     if measured.direction is not None:
         directions = perpendicular(measured.direction)
-    elif isinstance(feature.shape, RoundPlane):
-        middle, rim = _disc(measured, world, feature.shape.radius)
+    elif radius := feature.shape.rim_radius:
+        middle, rim = _disc(measured, world, radius)
         return 2.0 * (middle + rim)
     else:
         directions = feature.frame[:3, feature.shape.located].T
@@ -220,8 +220,8 @@ def clipped(bonus: MaterialBonus, feature: str, world: World) -> Array:
 def orientation(measured: Measured, world: World) -> Array:
     """The largest over pairs of ends, or over the rim of a round face."""
     feature = world.assembly.features[measured.features[0]]
-    if isinstance(feature.shape, RoundPlane):
-        return 2.0 * _disc(measured, world, feature.shape.radius)[1]
+    if radius := feature.shape.rim_radius:
+        return 2.0 * _disc(measured, world, radius)[1]
     directions = feature.frame[:3, feature.shape.located].T if measured.direction is None else measured.direction[None]
     ends = _at_ends(measured, world, directions)
     return world.columns.largest(np.array([one - other for one, other in combinations(ends, 2)]))

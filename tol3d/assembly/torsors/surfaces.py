@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.assembly.model import Measured, RoundPlane, Shape
+from tol3d.assembly.model import Measured, Shape
 from tol3d.assembly.model.moves import unfit_surfaces
 from tol3d.assembly.torsors.columns import ROUNDING, without_rounding
 from tol3d.assembly.torsors.terms import Ends
@@ -174,11 +174,8 @@ class Surfaces:
         axis, normal, sides = self.world.axis(line), self.world.axis(plane), self.world.frame(plane)[:3, :2]
         middle, slope = (self.world.origin(line) - self.world.origin(plane)) @ sides, axis @ sides
         ends = -shape.reach[0], shape.reach[0]
-        if isinstance(flat, RoundPlane):
-            limits = [_within(float(middle @ slope), float(slope @ slope), float(middle @ middle) - flat.radius**2)]
-        else:
-            rows = zip(middle.tolist(), slope.tolist(), flat.reach, strict=True)
-            limits = [_within(own * by, by * by, own * own - reach * reach) for own, by, reach in rows]
+        pieces = [(middle[k], slope[k], reach) for k, reach in flat.limits]
+        limits = [_within(float(m @ s), float(s @ s), float(m @ m) - reach * reach) for m, s, reach in pieces]
         low, high = max(ends[0], *(own[0] for own in limits)), min(ends[1], *(own[1] for own in limits))
         tops = [self.world.origin(line) + end * axis for end in ((low, high) if low <= high else ends)]
         feet = [top - normal * (normal @ (top - self.world.origin(plane))) for top in tops]
