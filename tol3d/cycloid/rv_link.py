@@ -1,6 +1,5 @@
 """RV reducers between two shafts of a train, whose play is the reducer's lost motion at its carrier."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -10,22 +9,21 @@ import numpy as np
 from tol3d.cycloid.from_scene import REDUCERS
 from tol3d.cycloid.grammar.moves import RVReducerSpec
 from tol3d.cycloid.grammar.parts import CycloidDiscSpec
-from tol3d.cycloid.reducer.deviated import RVDeviated
+from tol3d.cycloid.reducer.deviated import PINS, RING, RVDeviated
 from tol3d.cycloid.reducer.formula import stages_by_formula
 from tol3d.cycloid.reducer.neglected import BEND, BentTurning
 from tol3d.cycloid.reducer.problems import problems_at
-from tol3d.cycloid.reducer.resting import SOLVERS, lost_motion_rates
+from tol3d.cycloid.reducer.resting import lost_motion_rates
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.shown import ShownReducer
 from tol3d.cycloid.reducer.trials import NO_FIT
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning
-from tol3d.gearing.links import LinkTrials, pin_name
+from tol3d.cycloid.system import RVSystem
+from tol3d.gearing.links import LinkTrials
 from tol3d.gearing.model.brought import Brought
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.plane import turned
 from tol3d.reducers.deviations import Acts
 from tol3d.reducers.link import UNFOLLOWED, Actions, Lost, ReducerLink
-from tol3d.reducers.trials import Solver
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
@@ -46,8 +44,8 @@ class RVLink(ReducerLink):
     kind: ClassVar[str] = "rv_reducer"
     unfollowed: ClassVar[str] = UNFOLLOWED.format("cycloid_transmission_error")
     presenter: ClassVar[str] = "tol3d.cycloid.presenting"
-    made_of: ClassVar[type[RVDeviated]] = RVDeviated
-    solvers: ClassVar[Mapping[str, Solver]] = SOLVERS
+    alone: ClassVar[type[RVSystem]] = RVSystem
+    pins_act: ClassVar[Acts] = Acts(PINS)
 
     own: RVSet
     sun_level: float = 0.0
@@ -72,28 +70,11 @@ class RVLink(ReducerLink):
         bent, straight = (self.free_turn(method(self.own), seen).play for method in (BentTurning, LinearTurning))
         return {BEND: np.abs(bent - straight)}
 
-    def deviated(self, seen: LinkTrials, turns: Array) -> RVDeviated:
-        """See ReducerLink.
-
-        An offset carrier equals a ring and a sun offset the other way: moving the whole reducer changes nothing.
-        """
-        found: RVDeviated = self.drawn(seen)
-        asides = self.asides(seen)
-        for acts, part, sun_turned in self._against_carrier if asides else ():
-            none = np.zeros((len(seen), 2))
-            aside = asides.get(part, none) - asides.get(self.own.carrier, none)
-            found.add(self.own, acts, turned(aside, -sun_turned * turns))
-        for k, (_, azimuth) in enumerate(self.pins):
-            if pin_name(k) in asides:
-                found.stage.carrier_holes[:, k] += turned(asides[pin_name(k)], _alike(seen, azimuth))
-        return found
-
     @property
-    def _against_carrier(self) -> tuple[tuple[Acts, str, float], ...]:
-        """Pin ring, and sun: effect of an offset of each, and its turns per turn of the output."""
-        ring = (Acts("pin ring"), self.own.ring, 0.0)
-        first = self.own.first
-        return (ring,) if first is None else (ring, (Acts("sun offset"), first.sun, float(self.own.ratio)))
+    def centrals(self) -> Mapping[str, tuple[Acts, float]]:
+        """See ReducerLink: pin ring, and sun."""
+        first, ring = self.own.first, {self.own.ring: (Acts(RING), 0.0)}
+        return ring if first is None else {**ring, first.sun: (Acts("sun offset"), float(self.own.ratio))}
 
     @property
     def levels(self) -> Mapping[str, float]:
@@ -111,21 +92,6 @@ class RVLink(ReducerLink):
     def pins(self) -> Sequence[tuple[float, float]]:
         """See StatedLink: where cranks turn in the carrier."""
         return [(self.own.crank_circle, float(azimuth)) for azimuth in self.own.azimuths]
-
-    def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
-        """See StatedLink."""
-        found: dict[str, list[Array]] = {part: [] for part in (*self.levels, *map(pin_name, range(self.own.cranks)))}
-        for piece, turns, slopes in self.slopes(seen):
-            against = np.zeros((len(piece), 2))
-            for acts, part, sun_turned in self._against_carrier:
-                units = (turned(np.tile(unit, (len(piece), 1)), -sun_turned * turns) for unit in np.eye(2))
-                by = np.stack([slopes.term(self.own, acts, unit) for unit in units], axis=-1)
-                found[part].append(by)
-                against -= by
-            found[self.own.carrier].append(against)
-            for k, (_, azimuth) in enumerate(self.pins):
-                found[pin_name(k)].append(turned(slopes.stage.carrier_holes[:, k], _alike(piece, -azimuth)))
-        return {part: np.concatenate(each) for part, each in found.items()}
 
     @property
     def offsets(self) -> Mapping[str, Acts]:
@@ -149,11 +115,6 @@ class RVLink(ReducerLink):
         first = seen.part(0, 1)
         turns = self.output_turns(first)[:, 0]
         return ShownReducer(self.own, self.deviated(first, turns), float(turns[0]), self.own.width, self.crank_hole)
-
-
-def _alike(seen: LinkTrials, angle: float) -> Array:
-    """The turns of an angle [rad] in each of some trials (trials,)."""
-    return np.full(len(seen), angle / (2 * math.pi))
 
 
 # from scenes ------------------------------------------------------------------------------------------

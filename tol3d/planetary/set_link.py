@@ -6,10 +6,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from tol3d.gearing.links import LinkTrials, pin_name
+from tol3d.gearing.links import LinkTrials
 from tol3d.gearing.model.brought import Brought
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.plane import turned
 from tol3d.numerics.programme import NO_ROOM
 from tol3d.planetary.exact.contact import Contact
 from tol3d.planetary.exact.shown import Made, ShownSet, heights_of, made_gears, shown_set
@@ -21,10 +20,9 @@ from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at
 from tol3d.planetary.sections import set_sections
 from tol3d.planetary.summary_types import PlanetarySetSummary
-from tol3d.planetary.trials import SOLVERS
+from tol3d.planetary.trials import SetTrials
 from tol3d.reducers.deviations import Acts
 from tol3d.reducers.link import UNFOLLOWED, Actions, Lost, ReducerLink
-from tol3d.reducers.trials import Solver
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
@@ -42,8 +40,8 @@ class SetLink(ReducerLink):
     kind: ClassVar[str] = "planetary_set"
     unfollowed: ClassVar[str] = UNFOLLOWED.format("planetary_transmission_error")
     presenter: ClassVar[str] = "tol3d.planetary.presenting"
-    made_of: ClassVar[type[Deviated]] = Deviated
-    solvers: ClassVar[Mapping[str, Solver]] = SOLVERS
+    alone: ClassVar[type[SetTrials]] = SetTrials
+    pins_act: ClassVar[Acts] = Acts("pin")
 
     own: PlanetarySet
     made: Made = field(default_factory=dict)
@@ -60,22 +58,12 @@ class SetLink(ReducerLink):
         free = turning.free(deviated, turns, own.output, own.opposite(own.output))
         return free.play(own.arm(own.output)), free.ends.mean(axis=1), np.asarray(free.status == NO_ROOM)
 
-    def deviated(self, seen: LinkTrials, turns: Array) -> Deviated:
-        """See ReducerLink: of the set's gears and pins."""
-        own, found = self.own, self.drawn(seen)
-        asides, none = self.asides(seen), np.zeros((len(seen), 2))
-        for m, mesh in enumerate(own.meshes if asides else ()):
-            aside = asides.get(own.carrier, none) - asides.get(mesh.central.name, none)
-            found.aside[:, m] = turned(aside, -self._carrier_rate * turns)
-        for k in range(own.planets):
-            found.pins[:, k] += asides.get(pin_name(k), none)
-        made: Deviated = found
-        return made
-
     @property
-    def _carrier_rate(self) -> float:
-        """Turns of the carrier in the world a turn of the output."""
-        return -float(self.own.turn(self.own.held) * self.own.planet_turns)
+    def centrals(self) -> Mapping[str, tuple[Acts, float]]:
+        """See ReducerLink: in the frame of the carrier."""
+        carrier = -float(self.own.turn(self.own.held) * self.own.planet_turns)
+        names = [mesh.central.name for mesh in self.own.meshes]
+        return {name: (Acts("aside", name, -1.0), carrier) for name in names}
 
     def shown(self, seen: LinkTrials) -> ShownSet:
         """Its gears in the first trial, in a frame at the driver's origin that rests, its height not counted."""
@@ -100,17 +88,6 @@ class SetLink(ReducerLink):
     def pins(self) -> Sequence[tuple[float, float]]:
         """See StatedLink."""
         return [(self.own.centre_distance, azimuth) for azimuth in self.own.azimuths]
-
-    def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
-        """See StatedLink."""
-        found = [
-            (turned(slopes.aside, (self._carrier_rate * turns)[:, None]), slopes.pins)
-            for _, turns, slopes in self.slopes(seen)
-        ]
-        aside, pins = (np.concatenate(own) for own in zip(*found, strict=True))
-        of_gears = {mesh.central.name: -aside[:, m] for m, mesh in enumerate(self.own.meshes)}
-        of_pins = {pin_name(k): pins[:, k] for k in range(self.own.planets)}
-        return {**of_gears, **of_pins, self.own.carrier: aside.sum(axis=1)}
 
     @property
     def offsets(self) -> Mapping[str, Acts]:

@@ -5,17 +5,18 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
+from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink, pin_name
 from tol3d.gearing.model.brought import shaft_of
 from tol3d.numerics.arrays import Array
-from tol3d.reducers.deviations import Acts, Deviations
-from tol3d.reducers.trials import Solver
+from tol3d.numerics.plane import turned
+from tol3d.reducers.deviations import Acts, Along
+from tol3d.reducers.trials import ReducerTrials
 from tol3d.scene import Scene
 from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.taken import ROWS_AT_ONCE
@@ -44,11 +45,11 @@ class ReducerLink(StatedLink):
     compares: ClassVar[bool] = True
     housed: ClassVar[bool] = False
 
-    made_of: ClassVar[type[Deviations]]
-    """Deviations of its parts."""
+    alone: ClassVar[type[ReducerTrials]]
+    """System of such a reducer alone, whose solvers and deviations of parts are also those of the link."""
 
-    solvers: ClassVar[Mapping[str, Solver]]
-    """By the names of both methods."""
+    pins_act: ClassVar[Acts]
+    """Effect of displacements of the carrier's pins, each outwards and counter-clockwise."""
 
     own: Any
     height: float
@@ -96,17 +97,17 @@ class ReducerLink(StatedLink):
 
     def is_compiled(self) -> bool:
         """See StatedLink."""
-        return all(solver.is_kept(self.own) for solver in self.solvers.values())
+        return all(solver.is_kept(self.own) for solver in self.alone.solvers.values())
 
     # its play ---------------------------------------------------------------------------------------
 
     def exact(self, seen: LinkTrials) -> FreeTurn:
         """The free turn of the output, all parts placed."""
-        return self.free_turn(self.solvers["exact"].turning(self.own), seen)
+        return self.free_turn(self.alone.solvers["exact"].turning(self.own), seen)
 
     def analytic(self, seen: LinkTrials) -> FreeTurn:
         """The same to first order."""
-        return self.free_turn(self.solvers[ANALYTIC_METHOD].turning(self.own), seen)
+        return self.free_turn(self.alone.solvers[ANALYTIC_METHOD].turning(self.own), seen)
 
     def free_turn(self, turning: Any, seen: LinkTrials) -> FreeTurn:
         """The free turn of the output by one method, position by position as a measure of the reducer reads it."""
@@ -118,14 +119,31 @@ class ReducerLink(StatedLink):
     def lost(self, turning: Any, deviated: Any, turns: Array) -> Lost:
         """The free turn at turns of the output (trials,), by a method's turning."""
 
-    @abstractmethod
     def deviated(self, seen: LinkTrials, turns: Array) -> Any:
-        """Deviations of its parts at turns of the output (trials,)."""
-
-    def drawn(self, seen: LinkTrials) -> Any:
-        """Deviations of its parts by its own contributors."""
+        """Deviations of its parts at turns of the output (trials,), by its own contributors and by bores."""
         drawn = ((each.name, seen.deviations[each.name]) for each in seen.contributors)
-        return self.made_of.drawn(self.own, self.acts, drawn, len(seen))
+        found = self.alone.made_of.drawn(self.own, self.acts, drawn, len(seen))
+        asides, none = self.asides(seen), np.zeros((len(seen), 2))
+        for part, acts, components in self._movable(turns) if asides else ():
+            carried = asides.get(self.own.carrier, none) if part in self.centrals else none
+            found.add(self.own, acts, components(asides.get(part, none) - carried))
+        return found
+
+    @property
+    @abstractmethod
+    def centrals(self) -> Mapping[str, tuple[Acts, float]]:
+        """Parts about the common axis but the carrier, whose offset equals that of all of them the other way.
+
+        Of each the effect of its offset from the carrier's axis, and the turns of the frame in which this acts, a turn
+        of the output.
+        """
+
+    def _movable(self, turns: Array) -> Iterator[tuple[str, Acts, Along]]:
+        """Parts that bores may move, the effect of that, and its components by the offset (trials, 2) [mm]."""
+        for part, (acts, rate) in self.centrals.items():
+            yield part, acts, partial(turned, turns=-rate * turns)
+        for k, pin in enumerate(np.eye(len(self.pins))):
+            yield pin_name(k), self.pins_act, partial(np.kron, pin)  # type: ignore[misc]  # its stub is of bool first
 
     # what acts on it --------------------------------------------------------------------------------
 
@@ -139,6 +157,19 @@ class ReducerLink(StatedLink):
             piece = seen.part(first, first + ROWS_AT_ONCE)
             turns = self.output_turns(piece)[:, 0]
             yield piece, turns, self.slopes_at(self.deviated(piece, turns), turns)
+
+    def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
+        """See StatedLink."""
+        pieces = []
+        for piece, turns, slopes in self.slopes(seen):
+            units = [np.tile(unit, (len(piece), 1)) for unit in np.eye(2)]
+            by = {
+                part: np.stack([slopes.term(self.own, acts, components(unit)) for unit in units], axis=-1)
+                for part, acts, components in self._movable(turns)
+            }
+            by[self.own.carrier] = -np.sum([by[part] for part in self.centrals], axis=0)
+            pieces.append(by)
+        return {part: np.concatenate([by[part] for by in pieces]) for part in pieces[0]}
 
     def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
         """By the contacts of each trial, to first order; see StatedLink, and ReducerTrials.regress_slopes."""

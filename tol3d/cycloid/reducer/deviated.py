@@ -9,7 +9,7 @@ import numpy as np
 from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.plane import evenly
+from tol3d.numerics.plane import evenly, turned
 from tol3d.reducers.deviations import Acts, Along, Deviations
 
 
@@ -31,6 +31,7 @@ class Reach:
 
 
 RING: Final = "pin ring"
+PINS: Final = "carrier pins"
 EFFECTS: Final[Mapping[str, Reach]] = {
     "pin circle": Reach("pins", ("",), part=0),
     RING: Reach("pins", planar=True),  # of all pins, turned to each
@@ -50,6 +51,7 @@ EFFECTS: Final[Mapping[str, Reach]] = {
     "crank phase": Reach("crank_phases", ("crank",)),
     "carrier hole": Reach("carrier_holes", ("hole",), planar=True),
     "carrier circle": Reach("carrier_holes", ("",), planar=True),
+    PINS: Reach("carrier_holes", planar=True),  # of each outwards and counter-clockwise
     "carrier offset": Reach("carrier_offsets", planar=True),
     "sun thickness": Reach("sun_thickness"),
     "planet thickness": Reach("planet_thickness", ("planet",)),
@@ -103,6 +105,9 @@ class RVDeviated(Deviations):
         array: Array = getattr(self if hasattr(self, reach.array) else self.stage, reach.array)
         if acts.effect == RING:
             return array, _ring_moved(own.profile.pins)
+        if acts.effect == PINS:
+            azimuths = own.azimuths / (2 * np.pi)
+            return array, lambda components: turned(components.reshape(len(components), own.cranks, 2), azimuths)
         into = array if reach.part is None else array[..., reach.part]
         sizes = [size if word else 1 for size, word in zip(into.shape[1:], reach.each, strict=False)]
         return into, lambda components: components.reshape(len(components), *sizes, *(2,) * reach.planar)

@@ -64,6 +64,7 @@ class Deviated(Deviations):
             "thickness": (self.central_thickness, self.planet_thickness),
             "offset": (self.central_offset, self.planet_offset),
             "clocking": (self.central_clocking, self.planet_clocking),
+            "aside": (self.aside, self.aside),
         }
         into = arrays[acts.effect][of_planets][:, place]
         facing = 0.0 if of_planets else own.meshes[place].facing
