@@ -25,6 +25,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     OrientationSpec,
     ProfileSpec,
     TotalRunOutSpec,
+    is_of_round_surface,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec, are_alike
@@ -198,15 +199,13 @@ def drawn_by(law: LawSpec, zone: Zone, files: Files) -> Confined | Process:
 
 def limited_along(spec: LocationSpec, feature: FeatureUnion) -> Array:
     """Directions (directions, 3) in which the zone of a location limits a feature, in the feature's frame."""
-    if isinstance(feature, PlaneSpec | SlotSpec):
-        return np.eye(3)[2:]
-    if isinstance(feature, PointSpec | SphereSpec):
-        whole = spec.zone.diameter is not None or (isinstance(spec, ProfileSpec) and isinstance(feature, SphereSpec))
-        return np.eye(3) if whole else np.array([_seen(spec.zone.along, feature)])
-    if spec.zone.along is None:
-        return np.eye(3)[:2]
-    x, y = _across(spec.zone.along, feature)
-    return np.array([[x, y, 0.0]]) / math.hypot(x, y)
+    axes, along = np.eye(3)[feature.shape.located], spec.zone.along
+    if len(axes) == 2 and along is not None:
+        x, y = _across(along, feature)
+        return np.array([[x, y, 0.0]]) / math.hypot(x, y)
+    if len(axes) < 3 or spec.zone.diameter is not None or is_of_round_surface(spec, feature.kind):
+        return axes
+    return np.array([_seen(along, feature)])
 
 
 def _location(spec: LocationSpec, feature: FeatureUnion, refined: Refined | None, form: float) -> Zone:

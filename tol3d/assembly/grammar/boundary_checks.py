@@ -7,7 +7,7 @@ import numpy as np
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features.feature_spec import AXES
+from tol3d.assembly.grammar.features.feature_spec import AXES, SIZED
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.inspected import (
     InspectedPatternSpec,
@@ -198,10 +198,6 @@ def _unfit_feature(
 
 def _may_be_later(drawing: Drawing, part: str, name: str) -> bool:
     return f"{part}.{name}" not in drawing.names or drawing.kind(f"{part}.{name}").kind in (*SIZED, "plane", "axis")
-
-
-SIZED = ("cylinder", "slot")
-"""Kinds of feature whose size widens their zones."""
 
 
 def unfit_modifiers(scene: Scene) -> Iterator[Problem]:

@@ -12,7 +12,8 @@ from typing import Final
 
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features import AxisSpec, ConeSpec, CylinderSpec, FeatureUnion
+from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.forms import of_location, of_section, of_total_run_out
 from tol3d.assembly.grammar.parts import SolidSpec, likes
@@ -278,7 +279,7 @@ class Drawing:
         own = self.kind(feature)
         if spec.along is not None:
             return unit(spec.along)
-        if isinstance(own, AxisSpec | CylinderSpec | ConeSpec):
+        if own.kind in AXES:
             return None
         normal = own.frame[:3, 2]
         if not spec.named_datums:

@@ -24,6 +24,10 @@ FaceKind = Literal["plane", "cylinder", "cone", "sphere"]
 
 AXES: Final = ("cylinder", "axis", "cone")
 """Kinds of feature with an axis, which may lie off across itself."""
+ROUND: Final = ("cylinder", "cone", "sphere")
+"""Kinds of feature with a round surface."""
+SIZED: Final = ("cylinder", "slot")
+"""Kinds of feature with opposed surfaces, which engage and whose size widens their zones."""
 
 
 class FaceSpec(Strict):

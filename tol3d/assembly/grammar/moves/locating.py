@@ -7,7 +7,8 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.assembly.grammar.features import ConeSpec, CylinderSpec, FeatureUnion, PlaneSpec, SphereSpec
+from tol3d.assembly.grammar.features import FeatureUnion
+from tol3d.assembly.grammar.features.feature_spec import ROUND
 from tol3d.assembly.grammar.moves.assembly_move import DrawnFeatures, PairSpec, PlacingSpec, PointTouch
 from tol3d.assembly.grammar.moves.mate import RelationSpec
 from tol3d.assembly.model.move import Acts
@@ -65,15 +66,13 @@ class LocatingSpec(PlacingSpec):
 
     def _round(self, name: str, own: FeatureUnion, other: FeatureUnion) -> str:
         """Error text for a round feature; "" where it fits."""
-        if not isinstance(own, SphereSpec | CylinderSpec | ConeSpec):
-            return ""
-        if not (self.acts.rocks or isinstance(other, PlaneSpec)):
+        if own.kind not in ROUND or not (self.acts.rocks or other.kind == "plane"):
             return ""
         words = f"expected a point or a plane, got {name!r}, which is {own.words}: its middle would lie there"
         remedy = "name the point of its surface that touches"
         if self.acts.rocks:
             return f"{words}; {remedy}, for a rest has no round contacts"
-        return f"{words}; {remedy}" if isinstance(own, ConeSpec) else f"{words}; take a move of kind touch, or {remedy}"
+        return f"{words}; {remedy}" if own.kind == "cone" else f"{words}; take a move of kind touch, or {remedy}"
 
 
 class ThreeTwoOneSpec(LocatingSpec):

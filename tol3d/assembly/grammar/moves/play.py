@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
-from tol3d.assembly.grammar.features import CylinderSpec, FeatureUnion, SlotSpec
+from tol3d.assembly.grammar.features.feature_spec import SIZED
 from tol3d.assembly.grammar.moves.assembly_move import DrawnFeatures, PairSpec, PlacingSpec
 from tol3d.assembly.grammar.moves.mate import RelationSpec
 from tol3d.assembly.grammar.parts import SolidSpec
@@ -39,29 +39,24 @@ class EngagementSpec(PairSpec):
         """Why its features do not engage, in words; "" where they do."""
         one, other = drawing.kind(self.from_), drawing.kind(self.to)
         for name, own in ((self.from_, one), (self.to, other)):
-            if not isinstance(own, CylinderSpec | SlotSpec):
+            if own.kind not in SIZED:
                 return f"expected a pin or tab and a hole or slot, got {name!r}, which is {own.words}"
         if (bolt := self.through) is not None:
-            if not all(isinstance(own, CylinderSpec) and own.hole for own in (one, other)):
+            if not all(own.kind == "cylinder" and own.shape.inner for own in (one, other)):
                 return f"expected two holes that the bolt goes through, got {self.from_!r} and {self.to!r}"
             shank = None if bolt.of is None or bolt.of not in drawing.names else drawing.kind(bolt.of)
-            if isinstance(shank, CylinderSpec) and shank.hole:
+            if shank is not None and shank.kind == "cylinder" and shank.hole:
                 return f"expected a bolt that is a pin, got {bolt.of!r}, which is a hole"
             return ""
-        if _is_inner(one) == _is_inner(other):
-            both = "two holes or slots" if _is_inner(one) else "two pins or tabs"
-            holes = _is_inner(one) and isinstance(one, CylinderSpec) and isinstance(other, CylinderSpec)
+        if one.shape.inner == other.shape.inner:
+            both = "two holes or slots" if one.shape.inner else "two pins or tabs"
+            holes = one.shape.inner and (one.kind, other.kind) == ("cylinder", "cylinder")
             advice = "; a bolt that is loose in both is `bolt` of a pattern's pair" if holes else ""
             return f"expected a pin or tab and a hole or slot, got {both}, {self.from_!r} and {self.to!r}{advice}"
-        inner, outer = (one, other) if _is_inner(one) else (other, one)
-        if isinstance(inner, CylinderSpec) and isinstance(outer, SlotSpec):
+        inner, outer = (one, other) if one.shape.inner else (other, one)
+        if (inner.kind, outer.kind) == ("cylinder", "slot"):
             return "expected a pin in a hole, a pin in a slot or a tab in a slot, got a tab in a hole"
         return ""
-
-
-def _is_inner(feature: FeatureUnion) -> bool:
-    """True for a hole or a slot."""
-    return (isinstance(feature, CylinderSpec) and feature.hole) or (isinstance(feature, SlotSpec) and not feature.tab)
 
 
 class BoltSpec(Strict):

@@ -1,13 +1,13 @@
 """Zones for location, orientation and form of a feature; run-outs are about an axis."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
-from tol3d.assembly.grammar.features.feature_spec import AXES
+from tol3d.assembly.grammar.features.feature_spec import AXES, ROUND
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
 from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, RingLawSpec, ZoneSpec, scaled_in_zone
 from tol3d.distributions.base import Stays
@@ -16,9 +16,6 @@ from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.strict import Strict, refused
-
-SURFACES: Final = ("cylinder", "cone", "sphere")
-"""Kinds of feature with a round surface."""
 
 
 class SegmentSpec(Strict):
@@ -145,7 +142,7 @@ class ProfileSpec(Composite):
     """
 
     words: ClassVar[str] = "a profile tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("plane", "point", *SURFACES)
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "point", *ROUND)
 
     kind: Literal["profile"]
 
@@ -276,7 +273,7 @@ class RoundnessSpec(FormSpec):
     """Roundness of every section of a cylinder, a cone or a sphere, between two circles with one centre."""
 
     words: ClassVar[str] = "a roundness tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = SURFACES
+    applies_to: ClassVar[tuple[str, ...]] = ROUND
 
     kind: Literal["roundness"]
 
@@ -312,4 +309,4 @@ class TotalRunOutSpec(LocationSpec):
 
 def is_of_round_surface(spec: FeatureTolerance, kind: str) -> bool:
     """True if a tolerance of a kind of feature holds a size and a place together: a profile of what is round."""
-    return isinstance(spec, ProfileSpec) and kind in SURFACES
+    return isinstance(spec, ProfileSpec) and kind in ROUND
