@@ -110,7 +110,7 @@ def test_slopes_are_differences_of_the_sum(own: PlanetarySet) -> None:
         ends = method.followed(deviated, TURNS, own.output, own.input, 0).ends
         return np.asarray((coefficients * ends).sum(axis=1))
 
-    slopes = method.slopes(deviated, TURNS, own.output, own.input, 0, coefficients)
+    slopes = method.slopes(deviated, TURNS, own.output, own.input, 0, lambda _: coefficients)
     for field in fields(Deviated):
         array, found = getattr(deviated, field.name), getattr(slopes, field.name)
         step = 1e-7 if "clocking" in field.name else 1e-6

@@ -126,6 +126,8 @@ def slopes_of(system: SetTrials, measure: ReducerMeasure, trials: Trials) -> Dev
             return slopes
         return StackUp(system.overcome).lost_motion_slopes(deviated, at, shaft).plus(slopes, -1.0)
     turns = np.array(measure.positions.fixed) / (2 * np.pi)
-    ends = method.followed(deviated, turns, shaft, stands, own.end(measure.load)).ends
-    coefficients = own.sense * weights_taken(measure, own.sense * ends)
-    return method.slopes(deviated, turns, shaft, stands, own.end(measure.load), np.ascontiguousarray(coefficients))
+
+    def coefficients(ends: Array) -> Array:
+        return own.sense * weights_taken(measure, own.sense * ends)
+
+    return method.slopes(deviated, turns, shaft, stands, own.end(measure.load), coefficients)

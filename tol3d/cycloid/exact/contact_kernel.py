@@ -1,7 +1,7 @@
 """First contact of cycloid discs among their pins, compiled over trials, crank angles and pins.
 
 A first-order screen finds every working pin's turn from its nominal foot: gap / lever. It errs by the curvature of the
-path over the pin's way along it from that foot, by the square of the turn, and by errors times the turn; the sum of these
+path over the pin's way along it from there, by the square of the turn, and by errors times the turn; the sum of these
 bounds says which pins may be first, and Newton's method is run on these only. A disc that leans touches with one of its
 faces, or between them where the gap is least inside.
 """

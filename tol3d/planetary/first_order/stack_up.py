@@ -6,14 +6,16 @@ counter-clockwise opens the flanks by s (sin(alpha_w) d_r +- cos(alpha_w) d_t); 
 them by r_b a. Working radii alone decide the rest: see PlanetarySet.all_rows. Nothing here sees a pose.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from tol3d.numerics.arrays import Array
+from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.plane import turned
 from tol3d.numerics.programme import ranges
-from tol3d.planetary.first_order.curve_kernel import first_order_curve
+from tol3d.planetary.first_order.curve_kernel import curve_slopes, first_order_curve
 from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines
 from tol3d.planetary.model.planetary_set import PlanetarySet
 
@@ -60,37 +62,52 @@ class StackUp:
 
     def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Free:
         """The lower (0) or upper (1) end of a shaft's turn at turns (positions,) of the output; see free."""
-        coefficients = np.zeros((len(deviated.pins), len(turns)))
-        return self._run(deviated, turns, shaft, stands, end, coefficients)[0]
+        return self._run(deviated, turns, shaft, stands, end)[0]
 
     def slopes(
-        self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int, coefficients: Array
+        self,
+        deviated: Deviated,
+        turns: Array,
+        shaft: str,
+        stands: str,
+        end: int,
+        coefficients_of: Callable[[Array], Array],
     ) -> Deviated:
         """Change of a sum of ends by a unit of each deviation while the contacts that are met stay the same.
-
-        Positions with a coefficient of 0 are left out.
 
         Args:
             turns: of the output, (positions,) of all trials or (trials, positions) of each.
             shaft, stands, end: see `followed`.
-            coefficients: of the ends in the sum (trials, positions).
+            coefficients_of: those of ends in the sum (trials, positions), from the ends themselves.
         """
-        _, slopes = self._run(deviated, turns, shaft, stands, end, coefficients)
+        trials = len(deviated.pins)
+        own, met = self.own, np.empty((trials, turns.shape[-1], len(self.own.unknowns(stands))), dtype=np.int64)
+        found, given = self._run(deviated, turns, shaft, stands, end, met)
+        slopes = (
+            np.zeros((trials, 2, len(own.all_rows))),
+            np.zeros(deviated.central_offset.shape),
+            np.zeros(deviated.planet_offset.shape),
+        )
+        coefficients = np.ascontiguousarray(coefficients_of(found.ends))
+        curve_slopes(own.rows(stands), own.objective(stands, shaft), *given, met, coefficients, *slopes)
         return self._by_deviation(*slopes)
 
     def lost_motion_slopes(self, deviated: Deviated, turns: Array, shaft: str) -> Deviated:
         """The same of a shaft's free turn at turns (trials,) of the output, the opposite shaft standing."""
-        stands, ones = self.own.opposite(shaft), np.ones((len(turns), 1))
-        low, high = (
-            self.slopes(deviated, turns[:, None], shaft, stands, end, sign * ones)
-            for end, sign in ((0, -1.0), (1, 1.0))
-        )
-        return low.plus(high)
+        stands = self.own.opposite(shaft)
+        low, high = (self.slopes(deviated, turns[:, None], shaft, stands, end, np.ones_like) for end in range(2))
+        return high.plus(low, -1.0)
 
     def _run(
-        self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int, coefficients: Array
-    ) -> tuple[Free, tuple[Array, Array, Array]]:
-        """Ends, and the derivatives of their sum; see first_order_curve."""
+        self,
+        deviated: Deviated,
+        turns: Array,
+        shaft: str,
+        stands: str,
+        end: int,
+        met: Places | None = None,
+    ) -> tuple[Free, tuple[Any, ...]]:
+        """Ends, and what they and their derivatives are found from; see first_order_curve, which writes `met`."""
         own, trials = self.own, len(deviated.pins)
         rates, planet = own.gear_rates
         still = replace(
@@ -103,12 +120,14 @@ class StackUp:
         across = [
             (m.sense * np.sin(m.working_pressure_angle), m.sense * np.cos(m.working_pressure_angle)) for m in own.meshes
         ]
-        phases = own.phases / (2 * np.pi)
-        flat, found = np.ravel(turns), Free.of(*coefficients.shape)
-        slopes = (
-            np.zeros((trials, 2, len(own.all_rows))),
-            np.zeros(deviated.central_offset.shape),
-            np.zeros(deviated.planet_offset.shape),
+        flat, found = np.ravel(turns), Free.of(trials, turns.shape[-1])
+        given = (
+            np.array(across),
+            np.array([own.gear_of(mesh) for mesh in own.meshes]),
+            cosines_and_sines(np.array(own.azimuths) / (2 * np.pi)),
+            cosines_and_sines(own.phases / (2 * np.pi)),
+            cosines_and_sines(flat[:, None] * rates),
+            cosines_and_sines(flat * planet),
         )
         first_order_curve(
             own.rows(stands),
@@ -116,18 +135,12 @@ class StackUp:
             upper,
             np.ascontiguousarray(deviated.central_offset),
             np.ascontiguousarray(deviated.planet_offset),
-            np.array(across),
-            np.array([own.gear_of(mesh) for mesh in own.meshes]),
-            cosines_and_sines(np.array(own.azimuths) / (2 * np.pi)),
-            cosines_and_sines(phases),
-            cosines_and_sines(flat[:, None] * rates),
-            cosines_and_sines(flat * planet),
+            *given,
             *own.asked(stands, shaft, end),
-            coefficients,
             *found.written,
-            *slopes,
+            np.empty((0, 0, 0), dtype=np.int64) if met is None else met,
         )
-        return found, slopes
+        return found, given
 
     def _by_deviation(self, on_sides: Array, on_central: Array, on_planet: Array) -> Deviated:
         """Change a unit of each deviation of each trial, in the places of the deviations themselves.
