@@ -15,7 +15,6 @@ from tol3d.reducers.link import Actions, ReducerLink
 from tol3d.scene import Scene
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.part import PartSpec
-from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.draw import Draw, Each, Planar, Scalar
 from tol3d.system.each_planar import EachPlanar
 from tol3d.system.plain import UNITS, PlainContributor
@@ -77,13 +76,10 @@ class ReducerKind:
         contributors, effects = [], {}
         for name, spec in scene.tolerances.items():
             effects[name] = acts = self.acts_of(scene, own, name, spec)
-            unit, per_unit = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"]
-            nominal = spec.nominal if isinstance(spec, ToleranceSpec) else ""
-            draw = self.draw_of(scene, own, acts, spec)
+            draw, unit = self.draw_of(scene, own, acts, spec), UNITS[spec.dimensions[0]]
+            words = spec.description
             contributors.append(
-                PlainContributor(
-                    name, spec.kind, draw, unit, per_unit, spec.description, least=acts.least, nominal=nominal
-                )
+                PlainContributor(name, spec.kind, draw, *unit, words, least=acts.least, nominal=spec.nominal)
             )
         return tuple(contributors), effects
 

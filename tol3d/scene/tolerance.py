@@ -41,7 +41,14 @@ def laws_in(value: Any) -> Iterator[DistributionSpec]:
 class ToleranceEntry(Entry):
     """A tolerance as a scene writes it: a contributor, or a limit of one, such as a tighter zone for orientation."""
 
+    dimensions: ClassVar[tuple[Dimension, ...]] = ("length",)
+
     description: str = Field(default="", description="the user's own words, shown in reports")
+
+    @property
+    def nominal(self) -> str:
+        """Word of a drawing for what moves the mean of the deviation; "" where it has nothing to be moved."""
+        return ""
 
     @abstractmethod
     def references(self) -> tuple[Reference, ...]:
@@ -64,13 +71,11 @@ class ToleranceEntry(Entry):
 class ToleranceSpec(ToleranceEntry):
     """A tolerance that is a contributor: one deviation and its distribution."""
 
-    dimensions: ClassVar[tuple[Dimension, ...]] = ("length",)
-
     distribution: StatedDistribution = Field(description="the law of the deviation")
 
     @property
     def nominal(self) -> str:
-        """Word of a drawing for what moves the mean of the deviation; "" where it has nothing to be moved."""
+        """See ToleranceEntry."""
         return "nominal"
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:

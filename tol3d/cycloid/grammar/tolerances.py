@@ -80,7 +80,6 @@ class CarrierBearingSpec(OfCarrier):
     words: ClassVar[str] = "the main bearing of a carrier"
 
     kind: Literal["carrier_bearing"]
-    of: Name = Field(description="the carrier")
 
 
 class CarrierHoleSpec(OfCarrier):
@@ -166,10 +165,7 @@ class LobePitchSpec(OfDisc):
     kind: Literal["lobe_pitch"]
     each: Literal["lobe"] = Field(default="lobe", description="lobe: every lobe deviates by itself")
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: lobes are drawn at equal pitches."""
-        return ""
+    nominal: ClassVar[str] = ""  # lobes are drawn at equal pitches
 
 
 class LobeProfileSpec(OfDisc):
@@ -180,10 +176,7 @@ class LobeProfileSpec(OfDisc):
     kind: Literal["lobe_profile"]
     each: Literal["lobe"] = Field(default="lobe", description="lobe: every lobe deviates by itself")
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: a profile has one drawn form."""
-        return ""
+    nominal: ClassVar[str] = ""  # a profile has one drawn form
 
 
 class PinCircleSpec(OfPinRing):
@@ -192,7 +185,6 @@ class PinCircleSpec(OfPinRing):
     words: ClassVar[str] = "radius of the pins' circle"
 
     kind: Literal["pin_circle"]
-    of: Name = Field(description="the ring of pins")
 
 
 class PinPositionSpec(OfPinRing):
@@ -208,10 +200,7 @@ class PinPositionSpec(OfPinRing):
     each: Literal["pin"] = Field(default="pin", description="pin: every pin deviates by itself")
     direction: Literal["radial", "tangential", "random"] = Field(description="radial, tangential or random")
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: pins are drawn at their places."""
-        return ""
+    nominal: ClassVar[str] = ""  # pins are drawn at their places
 
 
 class PinRadiusSpec(OfPinRing):
@@ -229,4 +218,3 @@ class PinRingOffsetSpec(OfPinRing):
     words: ClassVar[str] = "the pin ring off its axis"
 
     kind: Literal["pin_ring_offset"]
-    of: Name = Field(description="the ring of pins")

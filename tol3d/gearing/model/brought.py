@@ -11,7 +11,6 @@ from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.scene import Scene
-from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.draw import Draw
 from tol3d.system.mechanism import brought
 from tol3d.system.plain import UNITS
@@ -142,9 +141,8 @@ def acting_in(
 ) -> Contributor:
     """A tolerance that acts in a link alone; `turning` is the part of it with which the deviation turns."""
     spec: Any = scene.tolerances[name]
-    unit: Any = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"][0]
-    nominal = spec.nominal if isinstance(spec, ToleranceSpec) else ""
-    return Contributor(name, spec.kind, LinkDeviation(link, turning), draw, unit, spec.description, least, nominal)
+    unit: Any = UNITS[spec.dimensions[0]][0]
+    return Contributor(name, spec.kind, LinkDeviation(link, turning), draw, unit, spec.description, least, spec.nominal)
 
 
 # shafts that carry its parts ------------------------------------------------------------------------

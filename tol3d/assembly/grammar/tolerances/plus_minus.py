@@ -34,10 +34,7 @@ class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
     def named_datums(self) -> tuple[DatumSpec, ...]:
         return self.datums or ()
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: where the feature is drawn."""
-        return "position"
+    nominal: ClassVar[str] = "position"  # where the feature is drawn
 
 
 ENVELOPED: Final = ("cylinder", "slot")
@@ -64,10 +61,7 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
         "default: as the scene's `standard` and `envelope` say",
     )
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: the diameter or width."""
-        return "size"
+    nominal: ClassVar[str] = "size"  # the diameter or width
 
     @model_validator(mode="after")
     def _refuse_limits_out_of_order(self) -> Self:
@@ -85,10 +79,7 @@ class LocatorSpec(ToleranceSpec):
     of: Name = Field(description="the move")
     pair: str = Field(description="which of its pairs: primary 1 .. 3, secondary 1, 2, tertiary 1, or 1 .. 6")
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: where the locator stands."""
-        return "position"
+    nominal: ClassVar[str] = "position"  # where the locator stands
 
     def references(self) -> tuple[Reference, ...]:
         """The move."""

@@ -34,10 +34,7 @@ class AxisInPlaneSpec(MeshToleranceSpec):
 
     kind: Literal["axis_in_plane"]
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: axes are drawn parallel."""
-        return ""
+    nominal: ClassVar[str] = ""  # axes are drawn parallel
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """The driven axis turns about y."""
@@ -55,10 +52,7 @@ class AxisOutOfPlaneSpec(MeshToleranceSpec):
 
     kind: Literal["axis_out_of_plane"]
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: axes are drawn parallel."""
-        return ""
+    nominal: ClassVar[str] = ""  # axes are drawn parallel
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """The driven axis turns about x."""

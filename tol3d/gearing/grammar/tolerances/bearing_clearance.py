@@ -91,10 +91,7 @@ class BearingClearanceSpec(GearToleranceSpec):
 
     kind: Literal["bearing_clearance"]
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: a class of clearance."""
-        return "clearance"
+    nominal: ClassVar[str] = "clearance"  # a class of clearance
 
     of: Name = Field(description="the gear that the bearing carries, or a bearing")
     mesh: Name | None = Field(

@@ -171,10 +171,7 @@ class ReducerBacklashSpec(LinkToleranceSpec):
     kind: Literal["reducer_backlash"]
     of: Name = Field(description="the reducer")
 
-    @property
-    def nominal(self) -> str:
-        """See ToleranceSpec: a reducer is bought."""
-        return ""
+    nominal: ClassVar[str] = ""  # a reducer is bought
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The reducer's own backlash would be a second one."""

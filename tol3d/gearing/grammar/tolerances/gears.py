@@ -192,7 +192,7 @@ class ToothThicknessSpec(GearToleranceSpec):
 
     @property
     def nominal(self) -> str:
-        """See ToleranceSpec: the allowances of the thickness, or what is measured."""
+        """See ToleranceEntry: the allowances of the thickness, or what is measured."""
         if isinstance(self.over, Span):
             return "W_k"
         return "E_sns and E_sni" if self.over is None else ""  # over pins: the arc is no multiple of it
