@@ -227,11 +227,9 @@ class Drawing:
             width *= self.held_over(own.feature, spec.zone) / self.held_over(own.feature, own.spec.zone)
         if not isinstance(own.spec, AxialRunOutSpec):
             return width
-        shape, radius = self.kind(own.feature).shape, own.spec.radius
+        whole, radius = self.kind(own.feature).shape.rim_radius, own.spec.radius
         left = max(width - self.form(own.feature, own.spec), 0.0)
-        if radius is None or shape.surface != "plane":  # of another feature: refused elsewhere
-            return left
-        return left * max(shape.reach) / radius.internal
+        return left if radius is None or whole is None else left * whole / radius.internal  # None: refused elsewhere
 
     def held_over(self, feature: str, zone: ZoneSpec) -> float:
         """The length over which a zone holds a feature [mm]: its own, or beyond its end; 1 of a point."""

@@ -49,10 +49,5 @@ def _off(at: Array, datum: Sequence[Placed]) -> Array:
     if len(datum) > 1:
         line = datum[1].frame[:3, 3] - datum[0].frame[:3, 3]
         return np.asarray(off - line * (line @ off) / (line @ line or 1.0))
-    z = datum[0].frame[:3, 2]
-    match datum[0].shape.surface:
-        case "plane":
-            return np.asarray(z * (z @ off))
-        case "axis":
-            return np.asarray(off - z * (z @ off))
-    return off
+    sides = datum[0].frame[:3, datum[0].shape.held]
+    return np.asarray(sides @ (sides.T @ off))

@@ -39,6 +39,8 @@ class Facts:
     """Constraint by it as a datum."""
     facing: ClassVar[str] = ""
     """Word before the direction of its z."""
+    together: ClassVar[Sequence[slice]] = ()
+    """Coordinates x and y of a face, alone or together, whose length up to their reach is over it."""
 
     @property
     def held(self) -> slice:
@@ -104,11 +106,6 @@ class Facts:
     def surface_by_axis(self) -> Array:
         """(ends, ends): offsets of the ends of its axis -> displacements of its surface there, square to it."""
         return np.eye(len(self.ends))
-
-    @property
-    def limits(self) -> Sequence[tuple[slice, float]]:
-        """Coordinates of a point, alone or together, and their length up to which it is over a face [mm]."""
-        return ()
 
     @property
     def rim_radius(self) -> float | None:
@@ -204,6 +201,7 @@ class Plane(Flat):
 
     extent: tuple[float, float]
 
+    together: ClassVar[Sequence[slice]] = (slice(0, 1), slice(1, 2))
     rim: ClassVar[Array] = np.array([[[1.0, 1.0]], [[1.0, -1.0]]])
 
     @property
@@ -216,10 +214,6 @@ class Plane(Flat):
     def reach(self) -> tuple[float, float]:
         """From the middle to where the rises are, along x and y [mm]."""
         return self.extent[0] / 2, self.extent[1] / 2
-
-    @property
-    def limits(self) -> Sequence[tuple[slice, float]]:
-        return (slice(0, 1), self.reach[0]), (slice(1, 2), self.reach[1])
 
     @property
     def longest(self) -> float:
@@ -270,6 +264,7 @@ class RoundPlane(Flat):
 
     radius: float
 
+    together: ClassVar[Sequence[slice]] = (slice(0, 2),)
     rim: ClassVar[Array] = np.eye(2)[None]
 
     @property
@@ -281,10 +276,6 @@ class RoundPlane(Flat):
     def reach(self) -> tuple[float, float]:
         """From the middle to where the rises are, along x and y [mm]."""
         return self.radius, self.radius
-
-    @property
-    def limits(self) -> Sequence[tuple[slice, float]]:
-        return ((slice(0, 2), self.radius),)
 
     @property
     def rim_radius(self) -> float:

@@ -8,18 +8,7 @@ from typing import ClassVar, Final, Self
 import numpy as np
 
 from tol3d.assembly.model.feature import Axis, Cone, Contribution, Feature, Plane, Point, RoundPlane, Slot
-from tol3d.assembly.placing.poses import (
-    Pose,
-    column,
-    dot,
-    least_rotation,
-    length,
-    product,
-    repeated,
-    rotated,
-    square_to,
-    unit,
-)
+from tol3d.assembly.placing.poses import Pose, dot, least_rotation, length, product, repeated, rotated, square_to, unit
 from tol3d.numerics.arrays import Array
 
 _Z = np.array([[0.0], [0.0], [1.0]])
@@ -136,9 +125,10 @@ class ActualFeature:
 
     def farthest(self, frame: Array) -> Array:
         """The largest offset that counts of its ends from their places in a nominal frame (4, 4) (n,) [mm]."""
-        found, z = np.zeros(1), column(frame[:3, 2])
+        found, z = np.zeros(1), frame[:3, 2:3]
         for end, place in zip(self.ends, self.feature.shape.ends, strict=True):
-            found = np.maximum(found, length(self.counted(end - column(frame[:3, :3] @ place + frame[:3, 3]), z)))
+            aside = end - (frame[:3, :3] @ place + frame[:3, 3])[:, None]
+            found = np.maximum(found, length(self.counted(aside, z)))
         return found
 
     def lean(self, z: Array) -> Array:
@@ -247,15 +237,15 @@ class ActualDisc(ActualPlane):
         return np.asarray(np.sqrt(x * x + y * y))
 
     def farthest(self, frame: Array) -> Array:
-        z = column(frame[:3, 2])
-        return np.asarray(np.abs(dot(z, self.origin - column(frame[:3, 3]))) + self.rise(z))
+        z = frame[:3, 2:3]
+        return np.asarray(np.abs(dot(z, self.origin - frame[:3, 3:])) + self.rise(z))
 
 
 ACTUAL: Final[Mapping[type, type[ActualFeature]]] = {
-    Point: ActualFeature, Plane: ActualPlane, Slot: ActualSlot, RoundPlane: ActualDisc, Axis: ActualAxis,
-    Cone: ActualAxis,
+    Point: ActualFeature, Axis: ActualAxis, Cone: ActualAxis,
+    Plane: ActualPlane, Slot: ActualSlot, RoundPlane: ActualDisc,
 }  # fmt: skip
-"""The only place of this method that asks for the class of a shape."""
+"""By shape; no other place of this method asks for the class of one."""
 
 
 def _slope(rise: Array | float, reach: float) -> Array:

@@ -95,7 +95,7 @@ def over(plane: Shape, middle: Array, half: Array) -> tuple[Array, Array]:
         middle: the axis' middle along x and y of the plane (2, n) [mm].
         half: from there to its end at 1 (2, n) [mm].
     """
-    starts, ends = zip(*(_crossing(middle[k], half[k], reach) for k, reach in plane.limits), strict=True)
+    starts, ends = zip(*(_crossing(middle[k], half[k], plane.reach[k.start]) for k in plane.together), strict=True)
     low, high = np.maximum.reduce(starts), np.minimum.reduce(ends)
     return np.where(low <= high, low, -1.0), np.where(low <= high, high, 1.0)
 

@@ -81,8 +81,8 @@ def mark(shape: Facts, thickness: float) -> Surface:
 
 @mark.register
 def _(shape: Flat, thickness: float) -> Surface:
-    half, walls = WALL * thickness / 2, (0.0,) if shape.nominal_size is None else (-0.5, 0.5)
-    heights = [(shape.nominal_size or 0.0) * own for own in walls]
+    half, wall = WALL * thickness / 2, (shape.nominal_size or 0.0) / 2
+    heights = dict.fromkeys((-wall, wall))  # one of a face
     return together([edges(shape.reach, thickness, own - half, own + half) for own in heights])
 
 

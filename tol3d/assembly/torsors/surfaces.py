@@ -174,7 +174,7 @@ class Surfaces:
         axis, normal, sides = self.world.axis(line), self.world.axis(plane), self.world.frame(plane)[:3, :2]
         middle, slope = (self.world.origin(line) - self.world.origin(plane)) @ sides, axis @ sides
         ends = -shape.reach[0], shape.reach[0]
-        pieces = [(middle[k], slope[k], reach) for k, reach in flat.limits]
+        pieces = [(middle[k], slope[k], flat.reach[k.start]) for k in flat.together]
         limits = [_within(float(m @ s), float(s @ s), float(m @ m) - reach * reach) for m, s, reach in pieces]
         low, high = max(ends[0], *(own[0] for own in limits)), min(ends[1], *(own[1] for own in limits))
         tops = [self.world.origin(line) + end * axis for end in ((low, high) if low <= high else ends)]
