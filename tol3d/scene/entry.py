@@ -4,6 +4,7 @@ from abc import ABC
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, get_args
 
+from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.strict import Strict
@@ -40,6 +41,18 @@ class Entry(Strict, ABC):
     def contradictions(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Iterator[Contradiction]:
         """Conflicts with the PartSpecs and MoveSpecs that it names; called only when every name exists."""
         return iter(())
+
+
+class AboutOne(Entry):
+    """An entry about one other, which it names; `applies_to` says of which kinds that may be."""
+
+    applies_to: ClassVar[tuple[type[Entry], ...]]
+
+    of: Name
+
+    def references(self) -> tuple[Reference, ...]:
+        """The entry that it is about."""
+        return (Reference(("of",), self.of, self.applies_to),)
 
 
 def kind_of(spec: type[Entry]) -> str | None:

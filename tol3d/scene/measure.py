@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.scene.entry import Entry
+from tol3d.scene.entry import AboutOne, Entry
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
 from tol3d.strict import refused
@@ -50,7 +50,7 @@ class MeasureEntry(Entry):
         return self
 
 
-class MeasureSpec(MeasureEntry):
+class MeasureSpec(AboutOne, MeasureEntry):
     """A measure that is read on a move."""
 
     of: Name = Field(description="the move that it is read on")

@@ -9,9 +9,9 @@ from tol3d.reducers.grammar import Flank, FreeTurnSpec, HarmonicOrder, OverTurnS
 from tol3d.scene.direction import FixedAngle, RandomOrFixed, known_word, shape
 from tol3d.scene.listed import listed
 from tol3d.scene.measure import AngleSpec, CountLimit, MeasureSpec, Take
+from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import Length
-from tol3d.scene.reference import Reference
 from tol3d.units import Dimension
 
 Over = Annotated[
@@ -25,11 +25,9 @@ Reducer = Annotated[Name, Field(description="the RV reducer")]
 class CycloidMeasureSpec(MeasureSpec):
     """A measure of an RV reducer."""
 
-    of: Reducer
+    applies_to: ClassVar[tuple[type[MoveSpec], ...]] = (RVReducerSpec,)
 
-    def references(self) -> tuple[Reference, ...]:
-        """The reducer."""
-        return (Reference(("of",), self.of, (RVReducerSpec,)),)
+    of: Reducer
 
 
 class OutputAngleSpec(AngleSpec, CycloidMeasureSpec):

@@ -5,58 +5,46 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tol3d.cycloid.grammar.parts import CrankCarrierSpec, CrankshaftSpec, CycloidDiscSpec, PinRingSpec
+from tol3d.scene.entry import AboutOne
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
-from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.units import Dimension
 
 
-class OfPart(ToleranceSpec):
-    """A tolerance of one kind of part."""
-
-    owners: ClassVar[tuple[type[PartSpec], ...]]
-
-    of: Name
-
-    def references(self) -> tuple[Reference, ...]:
-        """Reference to the toleranced part."""
-        return (Reference(("of",), self.of, self.owners),)
-
-
-class OfDisc(OfPart):
+class OfDisc(AboutOne, ToleranceSpec):
     """A tolerance of the disc."""
 
-    owners: ClassVar[tuple[type[PartSpec], ...]] = (CycloidDiscSpec,)
+    applies_to: ClassVar[tuple[type[PartSpec], ...]] = (CycloidDiscSpec,)
 
     of: Name = Field(description="the disc")
 
 
-class OfPinRing(OfPart):
+class OfPinRing(AboutOne, ToleranceSpec):
     """A tolerance of the ring of pins."""
 
-    owners: ClassVar[tuple[type[PartSpec], ...]] = (PinRingSpec,)
+    applies_to: ClassVar[tuple[type[PartSpec], ...]] = (PinRingSpec,)
 
     of: Name = Field(description="the ring of pins")
 
 
-class OfCrankshaft(OfPart):
+class OfCrankshaft(AboutOne, ToleranceSpec):
     """A tolerance of the crankshaft."""
 
-    owners: ClassVar[tuple[type[PartSpec], ...]] = (CrankshaftSpec,)
+    applies_to: ClassVar[tuple[type[PartSpec], ...]] = (CrankshaftSpec,)
 
     of: Name = Field(description="the crankshaft")
 
 
-class OfCarrier(OfPart):
+class OfCarrier(AboutOne, ToleranceSpec):
     """A tolerance of the carrier."""
 
-    owners: ClassVar[tuple[type[PartSpec], ...]] = (CrankCarrierSpec,)
+    applies_to: ClassVar[tuple[type[PartSpec], ...]] = (CrankCarrierSpec,)
 
     of: Name = Field(description="the carrier")
 
 
-class BearingPlaySpec(OfPart):
+class BearingPlaySpec(AboutOne, ToleranceSpec):
     """A length: the diametral clearance of each bearing, twice the offset of an inner ring from the middle of its hole.
 
     That is the radial internal clearance of ISO 5753-1, which is stated on the diameter, as it is left when fitted. Of
@@ -64,7 +52,7 @@ class BearingPlaySpec(OfPart):
     """
 
     words: ClassVar[str] = "play of the cranks' bearings"
-    owners: ClassVar[tuple[type[PartSpec], ...]] = (CycloidDiscSpec, CrankCarrierSpec)
+    applies_to: ClassVar[tuple[type[PartSpec], ...]] = (CycloidDiscSpec, CrankCarrierSpec)
 
     kind: Literal["bearing_play"]
     of: Name = Field(description="the disc or the carrier")

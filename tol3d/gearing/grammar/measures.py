@@ -60,6 +60,8 @@ Over = Annotated[
 class MeshMeasureSpec(FlankMeasureSpec):
     """A measure that is read on a mesh."""
 
+    applies_to: ClassVar[tuple[type[MoveSpec], ...]] = (GearMeshSpec,)
+
     of: Name = Field(description="the mesh move")
     over: Over = Field(
         default="random",
@@ -80,10 +82,6 @@ class MeshMeasureSpec(FlankMeasureSpec):
     def several_positions(self) -> bool:
         """True if a trial is read at several positions."""
         return self.over in ("turn", "long_period")
-
-    def references(self) -> tuple[Reference, ...]:
-        """The mesh."""
-        return (Reference(("of",), self.of, (GearMeshSpec,)),)
 
     @model_validator(mode="after")
     def _refuse_take_without_over(self) -> Self:
@@ -143,6 +141,7 @@ class AngularBacklashSpec(MeshMeasureSpec):
 class TrainMeasureSpec(FlankMeasureSpec):
     """A measure that is read on a train; by default one number per trial."""
 
+    applies_to: ClassVar[tuple[type[MoveSpec], ...]] = (TrainSpec,)
     take: ClassVar[Take] = "value"
 
     of: Name = Field(description="the train")
@@ -156,10 +155,6 @@ class TrainMeasureSpec(FlankMeasureSpec):
     def several_positions(self) -> bool:
         """True if a trial is read at several positions."""
         return self.take != "value"
-
-    def references(self) -> tuple[Reference, ...]:
-        """The train."""
-        return (Reference(("of",), self.of, (TrainSpec,)),)
 
 
 class LostMotionSpec(TrainMeasureSpec):
@@ -246,6 +241,7 @@ class TransmissionErrorSpec(FlankMeasureSpec):
     Counted in the sense in which the working flank of the driver pushes the driven gear, 0 at the first position.
     """
 
+    applies_to: ClassVar[tuple[type[MoveSpec], ...]] = (GearMeshSpec, TrainSpec)
     dimension: ClassVar[Dimension] = "angle"
 
     kind: Literal["transmission_error"]
@@ -278,7 +274,3 @@ class TransmissionErrorSpec(FlankMeasureSpec):
     def several_positions(self) -> bool:
         """Always."""
         return True
-
-    def references(self) -> tuple[Reference, ...]:
-        """The mesh or the train."""
-        return (Reference(("of",), self.of, (GearMeshSpec, TrainSpec)),)

@@ -1,6 +1,6 @@
 """Kinds of measure of planetary sets."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -8,18 +8,16 @@ from tol3d.planetary.grammar.moves import PlanetarySpec
 from tol3d.reducers.grammar import Flank, FreeTurnSpec, HarmonicOrder, OverTurnSpec
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.measure import AngleSpec
+from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference
 
 
 class PlanetaryMeasureSpec(AngleSpec):
     """An angle that is read on a planetary set."""
 
-    of: Name = Field(description="the planetary set")
+    applies_to: ClassVar[tuple[type[MoveSpec], ...]] = (PlanetarySpec,)
 
-    def references(self) -> tuple[Reference, ...]:
-        """The set."""
-        return (Reference(("of",), self.of, (PlanetarySpec,)),)
+    of: Name = Field(description="the planetary set")
 
 
 class PlanetaryFreeTurnSpec(PlanetaryMeasureSpec, FreeTurnSpec):

@@ -9,10 +9,10 @@ from tol3d.assembly.grammar.zone import LawUnion, scaled_in_zone
 from tol3d.distributions.base import Stays
 from tol3d.files import Files
 from tol3d.planetary.grammar.parts import CarrierSpec
+from tol3d.scene.entry import AboutOne
 from tol3d.scene.name import Name
-from tol3d.scene.part import Length
+from tol3d.scene.part import Length, PartSpec
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceEntry, ToleranceSpec
 from tol3d.strict import Strict
 
@@ -27,23 +27,20 @@ class RoundZoneSpec(Strict):
         return self.model_copy(update={"diameter": self.diameter.like(factor * self.diameter.internal)})
 
 
-class BorePositionSpec(ToleranceEntry):
+class BorePositionSpec(AboutOne, ToleranceEntry):
     """A true position of the bores for the pins, to the carrier's own axis: each bore's axis lies in its cylinder.
 
     Axes stay parallel to the set's. Laws are those of position tolerances of general parts.
     """
 
     words: ClassVar[str] = "a position tolerance of bores"
+    applies_to: ClassVar[tuple[type[PartSpec], ...]] = (CarrierSpec,)
 
     kind: Literal["bore_position"]
     of: Name = Field(description="the carrier")
     each: Literal["planet"] = Field(default="planet", description="planet: every bore deviates by itself")
     zone: RoundZoneSpec = Field(description="zone of the drawing: a diameter")
     law: LawUnion
-
-    def references(self) -> tuple[Reference, ...]:
-        """The carrier."""
-        return (Reference(("of",), self.of, (CarrierSpec,)),)
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
         """See ToleranceEntry."""
@@ -54,7 +51,7 @@ class BorePositionSpec(ToleranceEntry):
         return ((("law", *path), name) for path, name in self.law.file_names())
 
 
-class PlanetPinSpec(ToleranceSpec):
+class PlanetPinSpec(AboutOne, ToleranceSpec):
     """A length: each pin, or the bore of the carrier that holds it, lies off its place; each one's own deviation.
 
     `radial` is positive outwards, `tangential` counter-clockwise; `random` takes the law for the distance from the
@@ -62,12 +59,9 @@ class PlanetPinSpec(ToleranceSpec):
     """
 
     words: ClassVar[str] = "places of pins"
+    applies_to: ClassVar[tuple[type[PartSpec], ...]] = (CarrierSpec,)
 
     kind: Literal["planet_pin"]
     of: Name = Field(description="the carrier")
     each: Literal["planet"] = Field(default="planet", description="planet: every pin deviates by itself")
     direction: Literal["radial", "tangential", "random"] = Field(description="radial, tangential or random")
-
-    def references(self) -> tuple[Reference, ...]:
-        """The carrier."""
-        return (Reference(("of",), self.of, (CarrierSpec,)),)

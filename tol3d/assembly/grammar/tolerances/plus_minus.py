@@ -8,9 +8,10 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.scene.entry import AboutOne
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Contradiction, Reference
+from tol3d.scene.reference import Contradiction
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
@@ -70,20 +71,17 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
         return self
 
 
-class LocatorSpec(ToleranceSpec):
+class LocatorSpec(AboutOne, ToleranceSpec):
     """Offset of a locator along its normal; positive lifts the part."""
 
     words: ClassVar[str] = "a locator's tolerance"
+    applies_to: ClassVar[tuple[type[LocatingSpec], ...]] = (LocatingSpec,)
 
     kind: Literal["locator"]
     of: Name = Field(description="the move")
     pair: str = Field(description="which of its pairs: primary 1 .. 3, secondary 1, 2, tertiary 1, or 1 .. 6")
 
     nominal: ClassVar[str] = "position"  # where the locator stands
-
-    def references(self) -> tuple[Reference, ...]:
-        """The move."""
-        return (Reference(("of",), self.of, (LocatingSpec,)),)
 
     def contradictions(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Iterator[Contradiction]:
         """A pair that the move does not have."""

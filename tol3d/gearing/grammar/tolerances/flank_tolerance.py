@@ -16,12 +16,12 @@ from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.gears import SpurGear
 from tol3d.gears.flank import LEFT, RIGHT, Flank
 from tol3d.gears.iso1328 import CLASSES, FlankTolerances, flank_tolerances
-from tol3d.scene.entry import Entry
+from tol3d.scene.entry import AboutOne, Entry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Contradiction, Reference
+from tol3d.scene.reference import Contradiction
 from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.strict import Strict, refused
 from tol3d.system.draw import Draw
@@ -73,7 +73,7 @@ IsoClass = Annotated[int, Field(ge=CLASSES[0], le=CLASSES[1])]
 """Flank tolerance class of ISO 1328-1:2013."""
 
 
-class FlankToleranceSpec(ToleranceEntry):
+class FlankToleranceSpec(AboutOne, ToleranceEntry):
     """A tolerance of single flanks of a spur gear, each tooth with deviations of its own."""
 
     applies_to: ClassVar[tuple[type[Entry], ...]] = (SpurGearSpec,)
@@ -82,10 +82,6 @@ class FlankToleranceSpec(ToleranceEntry):
     flanks: Flanks = Field(
         description="right or left: that side of the teeth; each: both, drawn each for itself; together: whole teeth"
     )
-
-    def references(self) -> tuple[Reference, ...]:
-        """The gear."""
-        return (Reference(("of",), self.of, self.applies_to),)
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The gear meshes with external gears only."""

@@ -17,7 +17,7 @@ from tol3d.gearing.shafts import Carried, Mesh
 from tol3d.gears import BevelPair, Gear
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
-from tol3d.scene.entry import Entry
+from tol3d.scene.entry import AboutOne, Entry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
@@ -114,16 +114,12 @@ def together(effects: Sequence[Effect]) -> Effect:
     return effects[0] if len(effects) == 1 else CombinedEffect(tuple(effects))
 
 
-class GearToleranceSpec(GearingToleranceSpec):
+class GearToleranceSpec(AboutOne, GearingToleranceSpec):
     """A tolerance of one gear, or of its shaft or bearing."""
 
     applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec,)
 
     of: Name = Field(description="the gear")
-
-    def references(self) -> tuple[Reference, ...]:
-        """The gear, or what carries it."""
-        return (Reference(("of",), self.of, self.applies_to),)
 
     def scale_of(self, gear: Gear) -> Scale | None:
         """From what the scene states to the deviation of a gear; None where that is the deviation."""
@@ -134,16 +130,12 @@ class GearToleranceSpec(GearingToleranceSpec):
         return by_scale(self.distribution.resolve(files), self.scale_of(gear))
 
 
-class MeshToleranceSpec(GearingToleranceSpec):
+class MeshToleranceSpec(AboutOne, GearingToleranceSpec):
     """A tolerance of the relative position of two axes."""
 
     applies_to: ClassVar[tuple[type[Entry], ...]] = (MeshSpec,)
 
     of: Name = Field(description="the mesh move")
-
-    def references(self) -> tuple[Reference, ...]:
-        """The mesh."""
-        return (Reference(("of",), self.of, self.applies_to),)
 
 
 class LinkToleranceSpec(GearingToleranceSpec):
