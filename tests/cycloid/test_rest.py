@@ -168,13 +168,14 @@ def test_loads_balance_the_torque_as_work_says() -> None:
     rest = STAGE.rests(deviated, phis, play, 1.0)
     most = rest.loads[:, 0].argmax(axis=-1)
     grown = deviated.pin_radii.copy()
-    grown[np.arange(50), most % 40] += 1e-6
+    grown[np.arange(50), most % 40] += 1e-7
     later = STAGE.rests(replace(deviated, pin_radii=grown), phis, play, 1.0)
     # a pin stands for both discs; where it is last to be reached a growth may change which pins carry
     loads = rest.loads[:, 0, :40] + rest.loads[:, 0, 40:]
-    expected = -1e-6 * loads[np.arange(50), most % 40]
-    close = np.isclose((later.turns - rest.turns)[:, 0], expected, rtol=2e-3, atol=0)
-    assert close.mean() > 0.9
+    expected = -1e-7 * loads[np.arange(50), most % 40]
+    off = np.abs((later.turns - rest.turns)[:, 0] / expected - 1.0)
+    assert np.quantile(off, 0.9) < 1e-4
+    assert np.median(off) < 2e-6  # circles met to 1e-10 mm alone would leave ten times as much
 
 
 @pytest.mark.slow

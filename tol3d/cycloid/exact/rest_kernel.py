@@ -6,8 +6,9 @@ each planet against the sun's, between which its crank may turn. The torque turn
 it: a linear programme with the gaps and slopes of the pose reached, solved again from where it leads until nothing
 moves. A round clearance is half-planes across two directions first; each solution that leaves the circle adds the
 tangent there, so that the circle is met to 1e-10 mm. Tangents at pins that overlap stay, too, for a pin in a hollow
-flank rests on its bend: with the last tangent alone bodies may go to and fro for ever. The multiplier of a gap is the
-force on it per torque.
+flank rests on its bend: with the last tangent alone bodies may go to and fro for ever. From the third programme on the
+contacts that carry are met by Newton's method, see rest_balance.py; where these are not yet the right ones the
+programmes go on. The multiplier of a gap is the force on it per torque.
 """
 
 from typing import Any, Final
@@ -15,6 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.cycloid.exact.pin_contact import ContactShape
+from tol3d.cycloid.exact.rest_balance import CARRIES, PIN, balanced
 from tol3d.cycloid.exact.rest_rows import ARM, ROOM, TURNS, based, bearing_at, mesh_written, pins_written, working_pins
 from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.compiled import kernel, nested
@@ -27,13 +29,12 @@ MET: Final = 1e-10  # mm
 NEARLY_MET: Final = 1e-8  # mm; in the last steps, where idle bodies still go to and fro and the carrier stands
 STILL: Final = 5e-11  # mm at the arm, of the carrier's turn
 MOST_STEPS: Final = 150
+SETTLES: Final = 2  # steps before a balance on the contacts that carry is tried
 LAST: Final = 100  # steps before
 WILD: Final = 8  # steps in which bodies may go anywhere in their room; then
 NEAR: Final = 100.0  # times the deepest overlap or the last turn, so that idle bodies do not go to and fro
 CUTS: Final = 40  # tangents a bearing
 BENDS: Final = 60  # tangents at pins
-PIN: Final = -1.0  # in place of a bearing's number
-CARRIES: Final = 1e-9  # of a gap's multiplier
 
 
 @nested
@@ -125,7 +126,7 @@ def rested(
     rooms: Any,
 ) -> tuple[int, float]:  # fmt: skip
     """Status of a stage that is turned in a sense, and the carrier's turn [rad]."""
-    rows, lower, upper, basis, solving, x, z, planes, across, bends = rooms
+    rows, lower, upper, basis, solving, x, z, planes, across, bends, _, _ = rooms
     discs, cranks, _, _, _ = stage
     radial, meshes = clearances
     count, bearings = z.shape[0], cranks * (discs + 1)
@@ -177,6 +178,8 @@ def rested(
             continue
         for k in range(count):
             z[k] += x[k]
+        if step >= SETTLES and balanced(shape, stage, throws, made, base, pins, clearances, working, rooms):
+            return OK, z[0] / ARM
     return STALLED, np.nan
 
 
@@ -197,14 +200,14 @@ def note(pinned: int, working: Any, basis: Any, multipliers: Any, bends: Any, lo
     arrays="f8[::1], f8[:,:,::1], f8[:,:,::1], f8[:,:,:,::1], f8[:,:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,:,::1], "
     "f8[:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,:,:,::1], f8[::1], f8[:,::1], f8, f8[:,::1], f8[:,:,::1], i8[:,::1], "
     "i1[:,::1], f8[:,::1], f8[::1], f8[::1], i8[::1], f8[::1], f8[::1], f8[:,::1], f8[:,::1], f8[:,::1], i8[::1], "
-    "f8[:,::1], f8[:,::1]",
+    "f8[:,::1], f8[:,::1], f8[:,::1], i8[::1]",
 )
 def rests(
     shape: Any, throws: Any, linkage: Any, holes: Any, thrown: Any, bored: Any, places: Any, radii: Any,
     lobe_pitch: Any, lobe_profile: Any, leans: Any, radial: Any, free: Any, leaving: Any, phis: Any, sense: float,
     turns: Any, loads: Any, near: Any, status: Any,
     rows: Any, lower: Any, upper: Any, basis: Any, x: Any, z: Any, planes: Any, across: Any, bends: Any, working: Any,
-    poses: Any, axes: Any,
+    poses: Any, axes: Any, system: Any, roles: Any,
 ) -> None:  # fmt: skip
     """Rests of trials at crank angles.
 
@@ -229,7 +232,7 @@ def rests(
     discs, cranks, count = throws.shape[0], holes.shape[1], z.shape[0]
     pinned = count + 2 * cranks
     solving = new_rooms(count)
-    rooms = (rows, lower, upper, basis, solving, x, z, planes, across, bends)
+    rooms = (rows, lower, upper, basis, solving, x, z, planes, across, bends, system, roles)
     base = (poses, axes)
     for i in range(phis.shape[0]):
         made = (holes[i], thrown[i], bored[i])
@@ -264,4 +267,6 @@ def work_arrays(discs: int, cranks: int, pins: int) -> tuple[Array | Places, ...
         *(np.zeros((size, count)), np.empty(size), np.empty(size), np.empty(count, np.int64)),
         *(np.empty(count), np.empty(count), np.empty((most, 3)), np.empty((3, count)), np.empty((most, count + 2))),
         *(np.empty(discs * pins, np.int64), np.empty((discs, 4)), np.empty((cranks, 2))),
+        np.empty((2 * count + 2, max(2 * count + 1, bearings))),
+        np.empty(bearings + 2 * cranks + discs * pins, np.int64),
     )
