@@ -21,7 +21,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import fill, fill_matrix
+from tol3d.numerics.loops import copy, eliminated, fill, fill_matrix
 from tol3d.numerics.programme import OK, STALLED, new_rooms, solve_lp
 from tol3d.numerics.small_angles import azimuth
 
@@ -57,7 +57,7 @@ def write_facing(turns: Any, number: int, senses: Any, distance: float, facing: 
 
 @nested
 def gaps_at(
-    shape: Any, given: Any, turns: Any, facing: Any, near: Any, rows: Any, lower: Any, upper: Any
+    shape: Any, given: Any, turns: Any, facing: Any, near: Any, rows: Any, opening: Any, lower: Any, upper: Any
 ) -> bool:  # fmt: skip
     """Write the rows of a trial at some turns, and their sides against those turns; False where base circles overlap.
 
@@ -75,6 +75,7 @@ def gaps_at(
         facing: cosines and sines (meshes + 2 planets, 2), see write_facing, to write in.
         near: 1 for planets whose rows are written (planets,); those of others stay.
         rows: of the contacts (contacts, turns), 0 where a turn does not move a mesh; the others are written.
+        opening: both flanks by each turn in the same form, as it moves the centres; written.
     """
     meshes, places, planets, senses, distance = shape
     central, planet, pin, aside, room, middle = given
@@ -112,8 +113,13 @@ def gaps_at(
             rows[r, m] = s * r_c + across * (own_x * x + own_y * y)
             rows[r, count] = -across * (pin_x * x + pin_y * y)
             rows[r, count + 1 + k] = r_p - across * (off_x * x + off_y * y)
+            apart = across * tan  # centres that come apart by d open flanks by s sin alpha' d
+            opening[r, m] = apart * (own_y * x - own_x * y)
+            opening[r, count] = apart * (pin_x * y - pin_y * x)
+            opening[r, count + 1 + k] = apart * (off_x * y - off_y * x)
             for j in range(senses.shape[1]):
                 rows[r, count + 1 + number + j] = senses[k, j] * rows[r, count] / distance
+                opening[r, count + 1 + number + j] = senses[k, j] * opening[r, count] / distance
             upper[r] = opened - n
             lower[r] = -opened - n
     return True
@@ -130,16 +136,16 @@ def seated(
         spring_ends: least and largest displacement by each spring (2, springs) [mm].
         unknowns: places of the programme's unknowns among the turns.
         objective, basis: see programme.solve_lp.
-        rooms: those of programme.solve_lp; cosines and sines, all planets, slopes, rows, lower, upper and x to write
-            in.
+        rooms: those of programme.solve_lp; cosines and sines, all planets, slopes, opening, rows, lower, upper and x to
+            write in.
         turns: zeros; written.
     """
-    solving, facing, near, slopes, rows, lower, upper, x = rooms
+    solving, facing, near, slopes, opening, rows, lower, upper, x = rooms
     springs = spring_ends.shape[1]
     contacts = slopes.shape[0]
     found, row, lacking = STALLED, -1, 0.0
     for _ in range(MOST_STEPS):
-        if not gaps_at(shape, given, turns, facing, near, slopes, lower, upper):
+        if not gaps_at(shape, given, turns, facing, near, slopes, opening, lower, upper):
             return STALLED, -1, 0.0
         for r in range(contacts):
             for j in range(unknowns.shape[0]):
@@ -189,6 +195,7 @@ def seated_ranges(
         np.empty((meshes.shape[0] + 2 * planets.shape[0], 2)),
         near,
         slopes,
+        np.empty((contacts, turns.shape[0])),
         rows,
         sides[0],
         sides[1],
@@ -272,17 +279,59 @@ def stepped(count: int, near: Any, rows: Any, low: Any, high: Any, x: Any, most:
 
 
 @nested
-def planet_turn(k: int, count: int, slopes: Any, lower: Any, upper: Any, others: Any, x: Any) -> float:
+def planet_turn(k: int, count: int, slopes: Any, opening: Any, lower: Any, upper: Any, others: Any, x: Any) -> float:
     """Least turn of a planet on its pin after which its meshes have room, where other unknowns have changed by x."""
     least, most = -np.inf, np.inf
     for r in range(k * count, (k + 1) * count):
-        taken = 0.0
+        taken, opened = 0.0, 0.0
         for j in range(others.shape[0]):
             taken += slopes[r, others[j]] * x[j]
-        least = max(least, (lower[r] - taken) / slopes[r, count + 1 + k])
-        most = min(most, (upper[r] - taken) / slopes[r, count + 1 + k])
+            opened += opening[r, others[j]] * x[j]
+        own, opens = slopes[r, count + 1 + k], opening[r, count + 1 + k]
+        least = max(least, (lower[r] - taken - opened) / (own + opens))
+        most = min(most, (upper[r] - taken + opened) / (own - opens))
     found: float = min(max(0.0, least), most) if least < most else 0.5 * (least + most)
     return found
+
+
+@nested
+def refined(
+    count: int, near: Any, gaps: Any, others: Any, programme: Any, sides: Any, matrix: Any, right: Any, x: Any
+) -> None:  # fmt: skip
+    """Move the point to where the contacts met meet with what turns open them by, which rows of two sides leave out.
+
+    Args:
+        count, near, others: see without_planets.
+        gaps: slopes, opening, lower and upper sides of the contacts.
+        programme: basis, rows, lower and upper sides of pairs and springs.
+        sides: at which rows of the basis are met.
+        matrix, right: to write in.
+        x: the point; written.
+    """
+    slopes, opening, lower, upper = gaps
+    basis, rows, low, high = programme
+    pairs = count * (count - 1) // 2
+    for j in range(x.shape[0]):
+        r, side = basis[j], 1.0 if sides[j] > 0.0 else -1.0
+        k, other, m = r // pairs, r % pairs, 1
+        if r >= pairs * near.shape[0] or near[k] == 0:
+            right[j] = high[r] if side > 0.0 else low[r]
+            for i in range(x.shape[0]):
+                matrix[j, i] = rows[r, i]
+            continue
+        while other >= m:
+            other -= m
+            m += 1
+        one, other, own = k * count + m, k * count + other, count + 1 + k
+        f = (slopes[one, own] - side * opening[one, own]) / (slopes[other, own] + side * opening[other, own])
+        right[j] = upper[one] - f * lower[other] if side > 0.0 else lower[one] - f * upper[other]
+        for i in range(x.shape[0]):
+            at = others[i]
+            matrix[j, i] = slopes[one, at] - side * opening[one, at]
+            matrix[j, i] -= f * (slopes[other, at] + side * opening[other, at])
+    sign, _ = eliminated(matrix, right, x.shape[0])
+    if sign != 0.0:
+        copy(x, right)
 
 
 @nested
@@ -293,24 +342,25 @@ def followed(
     """Go on along an objective from turns and a basis near the end; True if it is reached. See seated.
 
     A planet's turn takes no part in an objective, and is as little as its meshes let it be. Planets that a step leaves
-    more room than the next ones can take are left out of these. A step leaves out what shifts of centres by turns open
-    both flanks by, and all squares: of each turn that is at most the offsets of centres times it, for each of the two
-    contacts of a pair. LOOSE times offsets and the sum of all steps bounds what rows that are left out are wrong by.
+    more room than the next ones can take are left out of these. Rows leave out what shifts of centres by turns open
+    both flanks by; contacts that are met have it added, see refined, and a step leaves out squares. Of each turn that
+    is at most the offsets of centres times it, for each of the two contacts of a pair. LOOSE times offsets and the sum
+    of all steps bounds what rows that are left out are wrong by.
 
     Args:
         others, objective, basis: of the unknowns that are no planet's turn, see without_planets; rows of the basis are
             of its pairs, then of springs.
         loose: LOOSE times all offsets of centres [mm].
-        rooms: those of programme.solve_lp; cosines and sines, planets, slopes, lower, upper, rows of pairs and springs,
-            their sides, and x to write in.
+        rooms: those of programme.solve_lp; cosines and sines, planets, slopes, opening, lower, upper, rows of pairs and
+            springs, their sides, x, and equations to write in.
     """
-    solving, facing, near, slopes, lower, upper, rows, low, high, x = rooms
+    solving, facing, near, slopes, opening, lower, upper, rows, low, high, x, matrix, right = rooms
     count, number, springs = shape[0].shape[0], shape[2].shape[0], spring_ends.shape[1]
     first, gone = turns.shape[0] - springs, 0.0
     for k in range(number):
         near[k] = 1
     for _ in range(MOST_STEPS):
-        if not gaps_at(shape, given, turns, facing, near, slopes, lower, upper):
+        if not gaps_at(shape, given, turns, facing, near, slopes, opening, lower, upper):
             return False
         without_planets(count, near, slopes, lower, upper, others, rows, low, high)
         for spring in range(springs):
@@ -322,13 +372,16 @@ def followed(
         found, _, _ = solve_lp(rows, low, high, objective, basis, solving, x)
         if found != OK:
             return False
+        refined(
+            count, near, (slopes, opening, lower, upper), others, (basis, rows, low, high), solving[2], matrix, right, x
+        )  # fmt: skip
         moved = 0.0
         for j in range(others.shape[0]):
             turns[others[j]] += x[j]
             moved = max(moved, abs(x[j]))
         for k in range(number):
             if near[k] == 1:
-                own = planet_turn(k, count, slopes, lower, upper, others, x)
+                own = planet_turn(k, count, slopes, opening, lower, upper, others, x)
                 turns[count + 1 + k] += own
                 moved = max(moved, abs(own))
         if moved < STILL:
@@ -362,13 +415,16 @@ def placed_curve(
     """
     rest, springs, contacts = others.shape[0], senses.shape[1], meshes.shape[0] * planets.shape[0]
     basis, turns = np.empty(rest, np.int64), np.empty(meshes.shape[0] + 1 + planets.shape[0] + springs)
-    slopes, pairs = np.empty((contacts, turns.shape[0])), contacts * (meshes.shape[0] - 1) // 2 + springs
+    slopes, opening = np.empty((contacts, turns.shape[0])), np.empty((contacts, turns.shape[0]))
+    pairs = contacts * (meshes.shape[0] - 1) // 2 + springs
     fill_matrix(slopes, 0.0)
+    fill_matrix(opening, 0.0)
     solving = new_rooms(rest)
     rooms = (
         solving, np.empty((meshes.shape[0] + 2 * planets.shape[0], 2)), np.empty(planets.shape[0], np.int64), slopes,
-        np.empty(contacts), np.empty(contacts),
-        np.empty((pairs, rest)), np.empty(pairs), np.empty(pairs), np.empty(rest),
+        opening, np.empty(contacts), np.empty(contacts),
+        np.empty((pairs, rest)), np.empty(pairs), np.empty(pairs), np.empty(rest), np.empty((rest, rest)),
+        np.empty(rest),
     )  # fmt: skip
     shape = (meshes, places, planets, senses, distance)
     now = (np.empty((meshes.shape[0], 2)), np.empty((planet.shape[1], planet.shape[2], 2)))
