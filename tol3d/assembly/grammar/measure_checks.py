@@ -99,7 +99,7 @@ def unfit_holes(scene: Scene) -> Iterator[Problem]:
             if feature is None:
                 continue  # reported already
             path = ("measures", name, "holes", k)
-            if not getattr(feature.shape, "inner", True):
+            if not feature.shape.inner:
                 yield path, f"expected a hole, got {own!r}, which is a pin; a bolt passes through holes"
             elif spec.holes[0] in axes and (lean := _between(axes[spec.holes[0]], axes[own])) > LEANING:
                 yield path, f"expected a hole along {spec.holes[0]!r}, got {own!r} at {lean:.4g} deg to it"

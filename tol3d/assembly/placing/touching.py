@@ -175,7 +175,7 @@ def _contact(move: Touch, contact: Contact, nominal: World, middle: Array) -> tu
         raise InputError(
             f"{name}: lies in its middle, so that there is no direction to it; place {move.part} towards the contact"
         )
-    reaches = (np.linalg.norm(own.origin - middle), np.linalg.norm(apart), getattr(shapes[0], "length", 0.0) / 2)
+    reaches = (np.linalg.norm(own.origin - middle), np.linalg.norm(apart), shapes[0].ends[-1, 2])
     return kind, sign, float(max(reaches))
 
 

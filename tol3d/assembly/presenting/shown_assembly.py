@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Feature
+from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.posed import PosedSystem
 from tol3d.assembly.presenting.symbols import joined_symbols, labels, marks_on_solid, unnamed
@@ -234,7 +234,8 @@ def bodies(placed: Placed, colours: Sequence[str] = COLOURS) -> tuple[Body, ...]
     """
     assembly, frames = placed.assembly, placed.frames
     places = np.array([frame[:3, 3] for frame in frames.values()])
-    thickness = THIN * max(float(np.ptp(places, axis=0).max()), *(_extent(own) for own in assembly.features.values()))
+    extents = [float(np.ptp(own.shape.ends, axis=0).max()) for own in assembly.features.values()]
+    thickness = THIN * max(float(np.ptp(places, axis=0).max()), *extents)
     found = []
     for k, part in enumerate(assembly.parts):
         colour = colours[k % len(colours)]
@@ -249,9 +250,3 @@ def bodies(placed: Placed, colours: Sequence[str] = COLOURS) -> tuple[Body, ...]
         details = partial(marks_on_solid, tuple(own_frames), thickness) if own_frames else None
         found.append(replace(body, opacity=OPACITY, details=details))
     return tuple(found)
-
-
-def _extent(feature: Feature) -> float:
-    ends = getattr(feature.shape, "ends", None)
-    radius = getattr(feature.shape, "radius", 0.0)
-    return 2 * float(radius) if ends is None else float(np.ptp(ends, axis=0).max())

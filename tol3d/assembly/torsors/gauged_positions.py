@@ -7,6 +7,7 @@ import numpy as np
 
 from tol3d.assembly.model import Measured
 from tol3d.assembly.torsors.columns import without_rounding
+from tol3d.assembly.torsors.gauges import counted
 from tol3d.assembly.torsors.later_datums import LaterDatums
 from tol3d.assembly.torsors.room import changes, least_slack
 from tol3d.assembly.torsors.terms import Form
@@ -65,11 +66,7 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
     for name, bonus in zip(measured.features, bonuses, strict=True):
         feature = world.assembly.features[name]
         shape = feature.shape
-        if measured.direction is not None:
-            directions = perpendicular(measured.direction)
-        else:
-            directions = feature.frame[:3, shape.located].T
-        directions = np.concatenate([directions, np.zeros((2 - len(directions), 3))])
+        directions = counted(feature.frame, shape) if measured.direction is None else perpendicular(measured.direction)
         torsor = world.own[feature.part].feature(name) - gauges.rest
         ways = [directions @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3]) for end in shape.ends]
         forms += [way @ torsor for way in ways]

@@ -116,8 +116,7 @@ class Surfaces:
 
     def touching(self) -> tuple[float, Array]:
         """The sum of the radii, or the difference of one inside the other: nominally [mm], how it varies (columns,)."""
-        features = self.world.assembly.features
-        sizes = [getattr(features[name].shape, "diameter", None) or 0.0 for name in (self.start, self.end)]
+        sizes = [shape.diameter or 0.0 for shape in self.shapes]
         varying = [self.world.size(name) for name in (self.start, self.end)]
         signs = (1.0, 1.0)
         if self.is_inside:
