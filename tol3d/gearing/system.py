@@ -25,6 +25,7 @@ from tol3d.gearing.play.play import breakdowns_of
 from tol3d.gearing.stack_up import closed_form, reference_form
 from tol3d.gearing.summary.train_sections import description, train_sections
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.kept import kept
 from tol3d.scene import Scene
 from tol3d.solids import FlankStrips, measuring_strips
 from tol3d.system import contributor as system_contributor
@@ -151,6 +152,7 @@ class GearSystem:
 
     # what acts on a measure -------------------------------------------------------------------------
 
+    @kept
     def acting(self, measure: system_measure.Measure) -> tuple[Contributor, ...]:
         """See System."""
         return acting(self.model, gear_measure(measure))

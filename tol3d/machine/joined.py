@@ -103,7 +103,8 @@ class Joined:
 
     def joints_of(self, name: str) -> tuple[JointDrive, ...]:
         """The drives on whose joints a measure of the assembly depends."""
-        return tuple(drive for drive in self.drives if drive.joint in self.reaches_of(name))
+        reaches = self.reaches_of(name)
+        return tuple(drive for drive in self.drives if drive.joint in reaches)
 
     @kept
     def reaches_of(self, name: str) -> Mapping[str, float]:
@@ -221,6 +222,7 @@ class Joined:
         """True if a backlash depends on displacements of bores that are no sum of effects."""
         return bool(self.bending[self.reading(measure)].any())
 
+    @kept
     def reading(self, measure: GearMeasure) -> Bools:
         """True for displacements of the bores that a backlash depends on (shafts * 4,)."""
         own = {each.name for each in self.gears.acting(measure)}

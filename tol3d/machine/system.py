@@ -204,6 +204,7 @@ class MachineSystem(Joined):
 
     # what acts on a measure -------------------------------------------------------------------------
 
+    @kept
     def acting(self, measure: Measure) -> Sequence[Contributor]:
         """See System: for a backlash also what moves its shafts' bores; for a part also what turns its joints."""
         if isinstance(measure, WorstMeasure):
@@ -222,6 +223,7 @@ class MachineSystem(Joined):
         """The measures of the assembly of which it is the largest."""
         return [next(own for own in self.poses[pose].measures if own.name == name) for pose, name in measure.sizes]
 
+    @kept
     def _behind_joints(self, measure: Measure) -> Mapping[str, GearMeasure | None]:
         """Contributors of trains that turn a part, each with the lost motion by which it does, and flanks with none."""
         slopes = self._owner_of_part(measure).slopes_of(measure.name)
