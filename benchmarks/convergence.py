@@ -24,12 +24,12 @@ from tol3d.gearing.model import Measure, Model, Positions, model_from_scene
 from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.system import GearSystem
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, new_figure, plain_axes, save_figure
-from tol3d.samplers.replicates import REPLICATES, SamplerKind
-from tol3d.statistics import Moments
-from tol3d.study.draws import drawn
-from tol3d.study.replicated import Replicated, rows_of_replicates
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
+from tol3d.statistics.estimates import Moments
+from tol3d.statistics.samplers.replicates import REPLICATES, SamplerKind
+from tol3d.study.tallies.replicated import Replicated, rows_of_replicates
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 Array = NDArray[np.float64]
 

@@ -27,8 +27,16 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tol3d.cycloid.exact.contact import BOTH, AsMade, bearings, contact_shape, first_contact, linkage, pin_centres
-from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.exact.contact import (
+    BOTH,
+    AsMade,
+    bearings,
+    contact_shape,
+    first_contact,
+    linkage,
+    pin_centres,
+)
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
 
 BLOCK = 500  # units
 PROFILE = DiscProfile(40, 114.5, 5.0, 2.2, Modification(-0.02, -0.02 * math.sqrt(1 - (2.2 * 40 / 114.5) ** 2)))

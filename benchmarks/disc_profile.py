@@ -17,8 +17,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-from tol3d.cycloid.model.limits import least_gap, neighbours_touch_at
-from tol3d.cycloid.model.profile import UNMODIFIED, DiscProfile, Modification
+from tol3d.gearing.cycloid.model.limits import least_gap, neighbours_touch_at
+from tol3d.gearing.cycloid.model.profile import UNMODIFIED, DiscProfile, Modification
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, legend_below, new_figure, plain_axes, save_figure
 
 Array = NDArray[np.float64]

@@ -25,11 +25,11 @@ from tol3d import load_scene
 from tol3d.gearing.model import Backlash, Model, Reading
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.simulate import simulation_of
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.study.task import materials_of, method_of
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 WARM_UP_TRIALS = 50  # the first use builds the BVHs

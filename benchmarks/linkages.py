@@ -23,11 +23,11 @@ from rich.console import Console
 from rich.table import Table
 
 from tol3d import Overrides, load_scene
-from tol3d.linkage.closing import loops_closed
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
-from tol3d.system.measure import Measure
-from tol3d.system.trials import Trials
+from tol3d.assembly.linkage.closing import loops_closed
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 POSES = 14
@@ -55,7 +55,7 @@ def kernel_calls(answering: Callable[[], object]) -> list[tuple[Any, ...]]:
         found.append(arguments)
         loops_closed(*arguments)
 
-    with patch("tol3d.linkage.loop.loops_closed", noted):
+    with patch("tol3d.assembly.linkage.loop.loops_closed", noted):
         answering()
     return found
 

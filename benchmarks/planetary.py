@@ -24,12 +24,12 @@ from rich.console import Console
 from rich.table import Table
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.execution.pools import Execution
-from tol3d.planetary.exact.contact import Contact
-from tol3d.planetary.first_order.stack_up import StackUp
-from tol3d.planetary.from_scene import planetary_system
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
+from tol3d.gearing.planetary.exact.contact import Contact
+from tol3d.gearing.planetary.first_order.stack_up import StackUp
+from tol3d.gearing.planetary.from_scene import planetary_system
+from tol3d.study.execution.pools import Execution
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 POSITIONS = 360
 REDUCERS = ("rv_250aii", "reducer_3k", "robot_arm")

@@ -27,9 +27,8 @@ from rich.table import Table
 
 from tol3d import open_run
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.blocks import block_trials
-from tol3d.study.draws import drawn
-from tol3d.study.task import materials_of, method_of
+from tol3d.study.results.task import block_trials, materials_of, method_of
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

@@ -22,16 +22,16 @@ from rich.table import Table
 from tol3d import InputError, load_scene
 from tol3d.analyses.response import Response, response_of
 from tol3d.gearing.engines.gaps import exact_engine
-from tol3d.gearing.meshing.backlash import turning_gear
+from tol3d.gearing.meshing.seats import turning_gear
 from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Backlash
 from tol3d.gearing.system import gear_model
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.regressors import regressors
-from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.study.task import materials_of, method_of
+from tol3d.study.effects.regressors import regressors
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SYSTEMS = ("spur_pair", "bevel_pair")

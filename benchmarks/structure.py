@@ -135,7 +135,7 @@ class Structure:
 
 
 def room_of(module: str) -> str:
-    """The room of a module such as `tol3d.study.tally`."""
+    """The room of a module such as `tol3d.study.tallies.tally`."""
     return module.split(".")[1]
 
 

@@ -19,7 +19,7 @@ from studies import SCENES, TimedStudy, measured
 
 from tol3d import load_scene
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.blocks import contacts_of
+from tol3d.study.results.task import contacts_of
 
 TARGET = 200_000  # trials/s of the shoulder on two workers
 CONTACTS, QUICK_CONTACTS = 4_000_000, 500_000  # of each worker

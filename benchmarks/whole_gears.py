@@ -6,14 +6,14 @@ from dataclasses import replace
 import fcl
 import numpy as np
 
+from tol3d.cad.solids import display_mesh
 from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import GearSystem
-from tol3d.solids import display_mesh
-from tol3d.study.draws import drawn
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.system.stated import mean_deviations, nominal_build
+from tol3d.study.system.trials import mean_deviations, nominal_build
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 DEFLECTION = 0.001  # mm; as fine as whole gears can be tessellated in reasonable time
 GAP_XTOL = 1e-4  # mm; where the secant steps stop: each contact is found with at most this much gap left

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.gearing.cycloid.model.stage import Deviated
 
 Array = NDArray[np.float64]
 

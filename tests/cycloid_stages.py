@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from tol3d.cycloid.exact.contact import AsMade, bearings, linkage, pin_centres
-from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.exact.contact import AsMade, bearings, linkage, pin_centres
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
 
 Array = NDArray[np.float64]
 

@@ -4,10 +4,10 @@ from collections.abc import Callable
 from functools import cache
 from typing import Protocol
 
+from tol3d.cad.solids import FlankStrips, measuring_strips
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.model import Model
 from tol3d.gears import Gear
-from tol3d.solids import FlankStrips, measuring_strips
 
 Command = Callable[..., tuple[int, str, str]]
 """`tol3d ARGUMENTS` in this process: exit code, stdout, stderr."""

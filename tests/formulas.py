@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.response import Response, response_of
-from tol3d.distributions.normal import Normal
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.system.copula import Block, Copula
-from tol3d.system.draw import Draw, Scalar
-from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.study.system.copula import Block, Copula
+from tol3d.study.system.draw import Draw, Scalar
+from tol3d.study.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 Array = NDArray[np.float64]
 Value = Callable[[Array], Array]

@@ -14,12 +14,12 @@ from tol3d.gearing.methods.geometric import GeometricMethod
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.system.measure import Measure
-from tol3d.system.trials import Trials
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 
 def simulated(model: Model, **study: Any) -> Simulation:

@@ -52,7 +52,7 @@ from tol3d.assembly.model import Assembly, Floating, Locate, Measured, Relation,
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.torsors import method as torsors
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 KEPT = TESTS / "assembly" / "kept_trials.npz"
 TOLERANCE = 1e-9

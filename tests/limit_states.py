@@ -12,16 +12,16 @@ from scipy.stats import chi2, norm
 
 from tol3d.analyses.limit_state import Side
 from tol3d.analyses.response import Response, response_of
-from tol3d.distributions import Distribution
-from tol3d.distributions.normal import Normal
-from tol3d.distributions.uniform import Uniform
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.system.draw import Draw, Scalar
-from tol3d.system.method import Answers, Method, MethodKind
-from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
-from tol3d.system.statuses import Statuses
-from tol3d.system.system import StreamKey
+from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.study.system.draw import Draw, Scalar
+from tol3d.study.system.method import Answers, Method, MethodKind
+from tol3d.study.system.outcome import Statuses
+from tol3d.study.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.study.system.system import StreamKey
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 Array = NDArray[np.float64]
 Value = Callable[[Array, Array], Array]

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
-from tol3d.runs.summary.kinds import default_kinds
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.values import Section
+from tol3d.study.runs.summary.kinds import default_kinds
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.values import Section
 
 Json = Mapping[str, Any]
 

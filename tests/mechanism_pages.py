@@ -11,11 +11,11 @@ from places import ROOT
 
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, TimedSpec
 from tol3d.assembly.mechanism import ASSEMBLY
-from tol3d.cycloid.mechanism import CYCLOID
+from tol3d.gearing.cycloid.mechanism import CYCLOID
 from tol3d.gearing.mechanism import GEARING
-from tol3d.planetary.mechanism import PLANETARY
+from tol3d.gearing.planetary.mechanism import PLANETARY
 from tol3d.scene import Grammar
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 
 
 @dataclass(frozen=True)

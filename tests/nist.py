@@ -7,7 +7,7 @@ from typing import Final
 
 from places import TESTS
 
-from tol3d.step import StepText, read_step_text
+from tol3d.cad.step import StepText, read_step_text
 
 FOLDER: Final = TESTS / "step" / "nist"
 FILES: Final = {

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.planetary import CentralMesh
-from tol3d.planetary.model.deviated import Deviated
-from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
-from tol3d.planetary.model.set_mesh import SetGear, SetMesh
+from tol3d.gearing.planetary import CentralMesh
+from tol3d.gearing.planetary.model.deviated import Deviated
+from tol3d.gearing.planetary.model.planetary_set import PlanetarySet, Spring
+from tol3d.gearing.planetary.model.set_mesh import SetGear, SetMesh
 
 Array = NDArray[np.float64]
 ALPHA = math.radians(20)

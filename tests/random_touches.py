@@ -13,8 +13,7 @@ from scipy.linalg import null_space
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
-from tol3d.assembly.grammar.measures.contact import ContactAngleSpec, SurfaceGapSpec
-from tol3d.assembly.grammar.measures.gap import GapSpec
+from tol3d.assembly.grammar.measures.gap import ContactAngleSpec, GapSpec, SurfaceGapSpec
 from tol3d.assembly.model import Assembly, Axis, Contact, Fix, Measured, Plane, Point, RoundPlane, Shape, Touch
 
 Array = NDArray[np.float64]

@@ -5,10 +5,10 @@ from dataclasses import fields
 
 import numpy as np
 
-from tol3d.cycloid.first_order.linear import LinearStage
-from tol3d.cycloid.model.profile import DiscProfile, Modification
-from tol3d.cycloid.model.stage import Deviated
-from tol3d.cycloid.reducer.formula import Source
+from tol3d.gearing.cycloid.first_order.linear import LinearStage
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.model.stage import Deviated
+from tol3d.gearing.cycloid.reducer.formula import Source
 
 SHORTENING = 88.0 / 114.5
 CRANK_CIRCLE = 66.0

@@ -5,8 +5,8 @@ from typing import Any, get_args
 
 from pydantic import BaseModel
 
-from tol3d.distributions import DistributionSpec
-from tol3d.distributions.stated import SHIPPED
+from tol3d.statistics.distributions import DistributionSpec
+from tol3d.statistics.distributions.stated import SHIPPED
 from tol3d.strict import Strict
 
 Field = tuple[type[BaseModel], str]

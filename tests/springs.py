@@ -5,14 +5,12 @@ from typing import Annotated, ClassVar, Literal
 
 from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.scene import Scene
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.bases import MoveSpec, PartSpec, ToleranceSpec
+from tol3d.scene.entry import Reference
 from tol3d.scene.name import Name
-from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Reference
-from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.system.mechanism import Mechanism
-from tol3d.system.plain import LengthSpec
+from tol3d.study.system.mechanism import Mechanism
+from tol3d.study.system.plain import LengthSpec
 from tol3d.units import Dimension, Of, Quantity
 
 

@@ -24,18 +24,18 @@ from tol3d.import_path import GROUP, named
 from tol3d.scene import Grammar, Kinds, Scene, Vocabulary, read_scene
 from tol3d.scene.entry import kind_of
 from tol3d.scene.schema import SECTIONS
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 
 if TYPE_CHECKING:
-    from tol3d.runs.summary.kinds import SummaryKinds
+    from tol3d.study.runs.summary.kinds import SummaryKinds
 
 SHIPPED: Final = (
     "tol3d.gearing.mechanism:GEARING",
     "tol3d.assembly.mechanism:ASSEMBLY",
-    "tol3d.machine.mechanism:MACHINE",
-    "tol3d.linkage.mechanism:LINKAGE",
-    "tol3d.planetary.mechanism:PLANETARY",
-    "tol3d.cycloid.mechanism:CYCLOID",
+    "tol3d.gearing.machine.mechanism:MACHINE",
+    "tol3d.assembly.linkage.mechanism:LINKAGE",
+    "tol3d.gearing.planetary.mechanism:PLANETARY",
+    "tol3d.gearing.cycloid.mechanism:CYCLOID",
 )
 
 DECLARED: Final = re.compile(r'^    kind: Literal\["(\w+)"\]', re.MULTILINE)
@@ -172,7 +172,7 @@ def _summary_kinds(grammar: Grammar) -> "SummaryKinds":
 
 
 def _added(vocabulary: Vocabulary) -> "SummaryKinds":
-    made = named("tol3d.runs.summary.kinds:SummaryKinds")
+    made = named("tol3d.study.runs.summary.kinds:SummaryKinds")
     presenter = vocabulary.presenter if isinstance(vocabulary, Mechanism) else ""
     shown: SummaryKinds = made(
         presenters=((vocabulary.name, presenter),) if presenter else (),

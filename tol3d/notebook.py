@@ -30,13 +30,13 @@ from tol3d.report.printed import Picture as Picture
 from tol3d.report.printed import Report as Report
 from tol3d.report.report_sections import report_sections
 from tol3d.report.table_files import ReportFormat, require_room_for_tables, write_tables
-from tol3d.runs.atomic_write import write_whole
-from tol3d.runs.bare import MissingMechanismWarning, open_even_bare
-from tol3d.runs.run import Run, open_run
-from tol3d.runs.summary.judged import Accepted, AcceptedPpk
 from tol3d.scene import Scene
-from tol3d.study.overrides import AS_WRITTEN, Overrides
-from tol3d.system.system import System
+from tol3d.study.runs.atomic_write import write_whole
+from tol3d.study.runs.bare import MissingMechanismWarning, open_even_bare
+from tol3d.study.runs.run import Run, open_run
+from tol3d.study.runs.summary.judged import Accepted, AcceptedPpk
+from tol3d.study.system.system import System
+from tol3d.study.trials.overrides import AS_WRITTEN, Overrides
 
 if TYPE_CHECKING:
     import trimesh

@@ -1,36 +1,37 @@
 """Read this first: the way of the data, stage by stage.
 
-    scene        what the user wrote        scene/                      load_scene        (kinds.py: what it may have)
-    system       what it means, mm and rad  system/, */system.py        mechanism_of
-    simulation   system, study, published   study/simulation.py         Simulation
-    draws        seed -> trials             study/draws.py              drawn
-    methods        trials -> answers          each mechanism's own        Method.answers
-    columns      both methods, in units       study/columns.py            columns_of
-    outcome      which trials seated        system/outcome.py           outcome_of
-    statistics   of one block, or several   study/tally.py              Tally             (sample.py: one method's)
-    task         what workers run           study/task.py               Task              (execution/pools.py: who runs)
-    blocks       run, kept, folded in order execution/folding.py        run_blocks
-    findings     tally -> summary           study/findings.py           findings          (budget.py: how many builds)
-    witness      some trials again          study/witness.py            witness_summary
-    explanation  why both methods differ      study/agreement/            explanations
-    result       the run on disk            runs/run.py                 Run               (writer.py, occupant.py)
-    verdicts     what is accepted           runs/summary/judged.py      JudgedMeasure
-    shown        to programs and notebooks  report/displayed_run.py     DisplayedRun
+    scene        what the user wrote        scene/                       load_scene      (kinds.py: what it may have)
+    system       what it means, mm and rad  study/system/, */system.py   mechanism_of
+    simulation   system, study, published   study/trials/simulation.py   Simulation
+    draws        seed -> trials             study/trials/draws.py        drawn
+    methods      trials -> answers          each mechanism's own         Method.answers
+    columns      both methods, in units     study/trials/columns.py      columns_of
+    outcome      which trials seated        study/system/outcome.py      outcome_of
+    statistics   of one block, or several   study/tallies/tally.py       Tally           (sample.py: one method's)
+    task         what workers run           study/results/task.py        Task            (execution/pools.py: who runs)
+    blocks       run, kept, folded in order study/execution/folding.py   run_blocks
+    findings     tally -> summary           study/results/findings.py    findings        (budget.py: how many builds)
+    witness      some trials again          study/results/witness.py     witness_summary
+    explanation  why both methods differ    study/results/agreement/     explanations
+    result       the run on disk            study/runs/run.py            Run             (writer.py, occupant.py)
+    verdicts     what is accepted           study/runs/summary/judged.py JudgedMeasure
+    shown        to programs and notebooks  report/displayed_run.py      DisplayedRun
 
-A study knows a system by `system/` alone: contributors, measures, statuses, methods. Gears are one such system. Theirs:
+A study knows a system by `study/system/` alone: contributors, measures, statuses, methods. Gears are one such system.
+Theirs:
 
-    model        parts, meshes, measures    gearing/model/              model_from_scene
-    layout       shafts in trees, one world gearing/model/layout.py     Model.layout
-    solids       CAD, strips of its flanks  parts/, solids/             measuring_strips  (for FCL, engine or witness)
-    build        deviations -> poses        gearing/builds/             build
-    meshing      gaps -> seated meshes      gearing/meshing/            Meshing.seat      (engines/ give the gaps)
-    measures     seated meshes -> values    gearing/meshing/backlash.py measure_backlash
-    stack-up     the second method            gearing/stack_up/           analytic_backlash
-    play         backlashes, together       gearing/play/               Play              (load_paths.py: in parallel)
+    model        parts, meshes, measures    gearing/model/           model_from_scene
+    layout       shafts in trees, one world gearing/model/layout.py  Model.layout
+    solids       CAD, strips of its flanks  parts/, cad/solids/      measuring_strips  (for FCL, engine or witness)
+    build        deviations -> poses        gearing/builds/          build
+    meshing      gaps -> seated meshes      gearing/meshing/         Meshing.seat      (engines/ give the gaps)
+    measures     seated meshes -> values    gearing/meshing/seats.py measure_backlash
+    stack-up     the second method          gearing/stack_up/        analytic_backlash
+    play         backlashes, together       gearing/play/            Play              (load_paths.py: in parallel)
 
-The exact engine goes from builds to readings in one compiled kernel (engines/exact/: foot -> nearest -> seating ->
-rows), to the same result as by its gaps. `builds/rates.py` and `slopes/` take the derivatives of measures
-through the contact.
+The exact engine goes from builds to readings in one compiled kernel (engines/exact/: foot -> nearest -> flank_contact
+-> rows), to the same result as by its gaps. `builds/rates.py` and `slopes/` take the derivatives of measures through
+the contact.
 
 A gear has a seat in each mesh that it is in, and builds have a place for each seat, in that mesh's own world; shafts
 turn together (`layout.py`), so one position of the first shaft of a tree is that of all. A measure is a weighted sum of
@@ -39,40 +40,41 @@ read of single meshes. Spur and bevel pairs go the same way: `gears/pair.py` say
 
 Assemblies are another. Theirs:
 
-    picks        faces -> numbers           assembly/picking/           settle            (when the scene is read)
-    drawing      tolerances, by feature     assembly/grammar/           Drawing
-    assembly     parts, frames, moves       assembly/from_scene/        understood        (model/: what they are)
-    zones        uniforms -> deviations     assembly/zones/             Confined          (catalogue.py: all zones)
-    placing      deviations -> finite poses assembly/placing/method.py    values
-    torsors      the second method            assembly/torsors/method.py    values
+    picks        faces -> numbers           assembly/picking/          settle     (when the scene is read)
+    drawing      tolerances, by feature     assembly/grammar/          Drawing
+    assembly     parts, frames, moves       assembly/from_scene/       understood (model/: what they are)
+    zones        uniforms -> deviations     assembly/zones/            Confined   (catalogue.py: all zones)
+    placing      deviations -> finite poses assembly/placing/method.py values
+    torsors      the second method          assembly/torsors/method.py values
 
 A feature lies in the datum frame that its location is toleranced to, made of the features of the same trial; moves
 place bodies in order, measures read them at the end or after a move. The torsors are worked out from the nominal
 geometry alone: they never see a pose.
 
-Machines are both in one world (`machine/`): shafts lie in bores of parts, and trains turn the joints between parts.
+Machines are both in one world (`gearing/machine/`): shafts lie in bores of parts, and trains turn the joints between
+parts.
 
-    bores        where shafts lie nominally machine/nominal.py          housed
-    displaced    deviations -> axes         machine/bores.py            Bores.exactly     (and to first order)
-    chains       links, joints, poses       machine/chain.py            Chain
-    drives       which train turns which    machine/drives.py           drives_of
-    all          placed, meshed, turned     machine/methods.py            MachineMethod
+    bores        where shafts lie nominally gearing/machine/nominal.py     housed
+    displaced    deviations -> axes         gearing/machine/bores.py       Bores.exactly (and to first order)
+    chains       links, joints, poses       gearing/machine/chain.py       Chain
+    drives       which train turns which    gearing/machine/open_chains.py drives_of
+    all          placed, meshed, turned     gearing/machine/methods.py     MachineMethod
 
 Each method of the assembly hands the axes of the trial to the same method of the gears, which hands back how far its
 trains turn the joints, pose by pose: both as deviations that are not drawn.
 
-Linkages bring one move into an assembly, `close_loop`, which places several bodies at once (`linkage/`).
+Linkages bring one move into an assembly, `close_loop`, which places several bodies at once (`assembly/linkage/`).
 
-    structure    a tree of joints, loops    linkage/structure.py        structured
-    kinematics   where it stands in a pose  linkage/kinematics.py       Kinematics
-    closing      deviations -> poses        linkage/closing.py          loops_closed
-    first order  the second method            linkage/first_order.py      Displaced
-    poses, paths an assembly in several     assembly/posed.py           PosedSystem
+    structure    a tree of joints, loops   assembly/linkage/structure.py   structured
+    kinematics   where it stands in a pose assembly/linkage/kinematics.py  Kinematics
+    closing      deviations -> poses       assembly/linkage/closing.py     loops_closed
+    first order  the second method         assembly/linkage/first_order.py Displaced
+    poses, paths an assembly in several    assembly/posed.py               PosedSystem
 
-`analyses/` asks any scene what an engineer decides from, by `analyses/response.py` alone; `adjustment/` finds shims and
-corrections of gears by several studies; `report/` and `cli/` show what is there. The analytic method gets the same
-deviations and the same positions as the geometric one and never sees a mesh, a pose or an engine. A trial is a pure
-function of (system, seed, trial index): `replay` makes any of them again.
+`analyses/` asks any scene what an engineer decides from, by `analyses/response.py` alone; `apps/adjustment/` finds
+shims and corrections of gears by several studies; `report/` and `cli/` show what is there. The analytic method gets the
+same deviations and the same positions as the geometric one and never sees a mesh, a pose or an engine. A trial is a
+pure function of (system, seed, trial index): `replay` makes any of them again.
 """
 
 import platform
@@ -84,28 +86,27 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from tol3d.execution.folding import Plan, StudyOutcome, run_blocks
-from tol3d.execution.pools import ONE_WORKER, Execution, pool_of
-from tol3d.execution.timing import Clock
-from tol3d.execution.watch import UNWATCHED, Watch
 from tol3d.kinds import NEEDED_KINDS
 from tol3d.report.displayed_run import DisplayedRun
-from tol3d.runs.fingerprint import Fingerprint
-from tol3d.runs.occupant import Place, free_folder, refuse_changed
-from tol3d.runs.run import Run
-from tol3d.runs.writer import RunWriter, refusals_explained
 from tol3d.scene import Grammar, Scene, read_scene, scene_from_python
-from tol3d.study.blocks import plan_of
-from tol3d.study.findings import findings, run_tables
-from tol3d.study.fingerprint import column_units, fingerprint_of, text_of
-from tol3d.study.overrides import AS_WRITTEN, Overrides, simulation_of
-from tol3d.study.replaying import Replay, replay, replayed, simulation_again
-from tol3d.study.simulation import Simulation
-from tol3d.study.stopping import enough
-from tol3d.study.tally import Tally
-from tol3d.study.task import Task, task_of, workers_for
-from tol3d.study.versions import installed_versions
-from tol3d.system.faults import faults_of
+from tol3d.study.execution.folding import Plan, StudyOutcome, run_blocks
+from tol3d.study.execution.pools import ONE_WORKER, Execution, pool_of
+from tol3d.study.execution.timing import Clock
+from tol3d.study.execution.watch import UNWATCHED, Watch
+from tol3d.study.results.findings import findings, run_tables
+from tol3d.study.results.fingerprint import column_units, fingerprint_of, text_of
+from tol3d.study.results.replaying import Replay, replay, replayed, simulation_again
+from tol3d.study.results.stopping import enough
+from tol3d.study.results.task import Task, plan_of, task_of, workers_for
+from tol3d.study.results.versions import installed_versions
+from tol3d.study.runs.manifest import Fingerprint
+from tol3d.study.runs.occupant import Place, free_folder, refuse_changed
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.writer import RunWriter, refusals_explained
+from tol3d.study.system.faults import faults_of
+from tol3d.study.tallies.tally import Tally
+from tol3d.study.trials.overrides import AS_WRITTEN, Overrides, simulation_of
+from tol3d.study.trials.simulation import Simulation
 
 COMPILING = "compiling kernels, once on this machine"
 

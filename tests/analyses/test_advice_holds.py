@@ -9,11 +9,11 @@ import pytest
 from numpy.typing import NDArray
 
 from tol3d import InputError
-from tol3d.analyses.drawn_builds import drawn_builds
+from tol3d.analyses.compared_builds import drawn_builds
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.what_to_change import ChangesQuestion, Proposal, changes_of
 from tol3d.simulate import load, simulation_of
-from tol3d.system.draw import Scalar
+from tol3d.study.system.draw import Scalar
 
 Array = NDArray[np.float64]
 

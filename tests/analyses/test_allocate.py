@@ -26,11 +26,11 @@ from tol3d.analyses.costs import Costs, Exponential, Grades, Reciprocal, costs_f
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import sections_of
 from tol3d.analyses.tolerance_search import Question, Target
-from tol3d.distributions.normal import Normal
-from tol3d.distributions.uniform import Uniform
-from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
-from tol3d.system.draw import Scalar
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.study.runs.run import open_run
+from tol3d.study.system.draw import Scalar
 
 SLOPES, SIGMAS = np.array([1.0, -2.0, 0.5, 1.5]), np.array([0.004, 0.002, 0.006, 0.001])
 WIDE = (0.05, 20.0)

@@ -10,7 +10,7 @@ import pytest
 from fixtures import Command
 
 from tol3d import InputError, Overrides, analyses, load_scene, run_scene
-from tol3d.runs.run import open_run
+from tol3d.study.runs.run import open_run
 
 ASKED: dict[str, tuple[Callable[[Any], Any], tuple[str, ...]]] = {
     "what-if": (

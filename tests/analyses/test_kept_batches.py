@@ -12,7 +12,7 @@ from tol3d.cli.analysed import asked_of
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.cache_folder import cache_folder
 from tol3d.scene.bundled import scene_path
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials
 
 SOME = 3
 

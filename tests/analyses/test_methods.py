@@ -21,23 +21,23 @@ from typer.testing import CliRunner
 from tol3d import InputError, Overrides, run_scene
 from tol3d.analyses.fitted_law import KINDS, Moments, fitted
 from tol3d.analyses.methods_section import MeasureMethods, Methods
-from tol3d.analyses.methods_table import NO_SLOPE, methods_report
 from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.shown_methods import NO_SLOPE, methods_report
 from tol3d.analyses.side_by_side import Drawn, methods, modified_factor
 from tol3d.analyses.subject import sections_of, text_of_section
 from tol3d.cli import app
-from tol3d.distributions import Distribution, Normal, Uniform
 from tol3d.report.page import Line
-from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.study.task import materials_of, method_of
-from tol3d.study.worst_cases import worst_cases
-from tol3d.system.copula import Block
-from tol3d.system.draw import Ball, Draw, Each, Planar, Scalar
-from tol3d.system.each_planar import EachPlanar
-from tol3d.system.plain import PlainContributor, PlainMeasure
+from tol3d.statistics.distributions import Distribution, Normal, Uniform
+from tol3d.study.effects.worst_cases import worst_cases
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.runs.run import open_run
+from tol3d.study.system.copula import Block
+from tol3d.study.system.draw import Ball, Draw, Each, Planar, Scalar
+from tol3d.study.system.each_planar import EachPlanar
+from tol3d.study.system.plain import PlainContributor, PlainMeasure
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 Array = NDArray[np.float64]
 INCH = 25.4  # mm

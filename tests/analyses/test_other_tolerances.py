@@ -9,18 +9,18 @@ from linear_stacks import stack
 
 from tol3d import InputError
 from tol3d.analyses.response import Response, response_of
-from tol3d.distributions.constant import Constant
-from tol3d.distributions.normal import Normal
-from tol3d.distributions.uniform import Uniform
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
+from tol3d.scene.bases import ToleranceSpec
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.scene.edit import with_tolerances, write_scene
-from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.simulate import load, simulation_of
-from tol3d.study.simulation import Simulation
-from tol3d.system.draw import JointDraw, Planar, Scalar
-from tol3d.system.other_laws import naturally_stays, scaled
+from tol3d.statistics.distributions.constant import Constant
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.study.system.draw import JointDraw, Planar, Scalar
+from tol3d.study.system.other_laws import naturally_stays, scaled
+from tol3d.study.trials.simulation import Simulation
 
 TRIALS = 40
 

@@ -21,8 +21,8 @@ from tol3d.analyses.rare_events import Method, limits_left, rare_event
 from tol3d.analyses.rare_section import RareEvents
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import sections_of
-from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
+from tol3d.study.runs.run import open_run
 
 SPUR_15 = 0.0507e-6
 """Probability of the spur pair below 15 µm: by 10^10 draws of an independent formula."""

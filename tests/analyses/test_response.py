@@ -16,16 +16,16 @@ from tol3d import InputError, Overrides, run_scene
 from tol3d.analyses import what_if
 from tol3d.analyses.response import Response, Values, response_of
 from tol3d.assembly.zones.float_draw import FloatDraw
-from tol3d.distributions.normal import Normal
-from tol3d.distributions.uniform import Uniform
 from tol3d.numerics.arrays import Array
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import load, simulation_of
-from tol3d.study import draws
-from tol3d.study.simulation import Simulation
-from tol3d.system.dependent import DrawnAs
-from tol3d.system.draw import Ball, Draw, Each, Planar, Scalar
-from tol3d.system.normals import groups_of, normal_count, uniforms_of
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.study.system.dependent import DrawnAs
+from tol3d.study.system.draw import Ball, Draw, Each, Planar, Scalar
+from tol3d.study.system.normals import groups_of, normal_count, uniforms_of
+from tol3d.study.trials import draws
+from tol3d.study.trials.simulation import Simulation
 
 QUICK = ("spur_pair", "hole_and_slot", "gearbox_in_housing")
 TRIALS = 200

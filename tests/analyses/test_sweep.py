@@ -16,9 +16,9 @@ from tol3d.analyses.sweep_picture import sweep_figure
 from tol3d.analyses.sweep_table import sweep_report, whole_table
 from tol3d.analyses.variant_sweep import Order, Sweep, SweepQuestion, sweep
 from tol3d.analyses.variants import Variable, grid_of, hypercube_of, plain_number, variable, variable_of
-from tol3d.execution.watch import Watch
 from tol3d.report.sheet import as_text
 from tol3d.simulate import load
+from tol3d.study.execution.watch import Watch
 from tol3d.units import Quantity
 
 UPPER = "tolerances.centre distance.distribution.upper"

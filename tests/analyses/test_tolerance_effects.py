@@ -13,17 +13,17 @@ from toys.registered import TOYS, known
 from typer.testing import CliRunner
 
 from tol3d import InputError, Overrides, open_run, run_scene
-from tol3d.analyses.effects_table import effects_report, whole_table
 from tol3d.analyses.response import response_of
+from tol3d.analyses.shown_effects import effects_report, whole_table
 from tol3d.analyses.subject import sections_of
 from tol3d.analyses.tolerance_effects import Effects, Index, MeasureEffects, default_base, effects
 from tol3d.cli import app
-from tol3d.distributions.normal import Normal
-from tol3d.distributions.uniform import Uniform
 from tol3d.simulate import load, simulation_of
-from tol3d.statistics.shapley import linear_shapley
-from tol3d.system.copula import Block
-from tol3d.system.draw import Draw, Planar, Scalar
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.statistics.estimates.shapley import linear_shapley
+from tol3d.study.system.copula import Block
+from tol3d.study.system.draw import Draw, Planar, Scalar
 
 Array = np.ndarray
 

@@ -16,17 +16,17 @@ from toys.registered import TOYS, known
 from tol3d import InputError, Overrides, run_scene
 from tol3d.analyses.before_after import WhatIf, first_order_ppm, what_if
 from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.shown_what_if import what_if_report
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of, slips
 from tol3d.analyses.subject import sections_of
-from tol3d.analyses.what_if_table import what_if_report
 from tol3d.assembly.zones.float_draw import FloatDraw
-from tol3d.distributions.normal import Normal
 from tol3d.report.sheet import as_text
-from tol3d.runs.run import open_run
-from tol3d.runs.summary.judged import JudgedMeasure
 from tol3d.simulate import load, simulation_of
-from tol3d.system.copula import Block
-from tol3d.system.draw import Scalar
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.study.runs.run import open_run
+from tol3d.study.runs.summary.judged import JudgedMeasure
+from tol3d.study.system.copula import Block
+from tol3d.study.system.draw import Scalar
 
 CENTRE = "centre distance"
 

@@ -19,25 +19,30 @@ from toys.registered import TOYS, known
 import tol3d
 from tol3d import InputError, Overrides
 from tol3d.analyses.changes_of_run import MOST_BUILDS, changes_of_run, not_ok
-from tol3d.analyses.drawn_builds import drawn_builds
+from tol3d.analyses.compared_builds import drawn_builds
 from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.shown_changes import (
+    changes_charts,
+    changes_lines,
+    changes_of_one,
+    changes_report,
+    contributions_table,
+)
 from tol3d.analyses.stated_changes import changed as changed_response
 from tol3d.analyses.stated_changes import factor_of
 from tol3d.analyses.subject import keep, sections_of
 from tol3d.analyses.what_to_change import Changes, ChangesQuestion, changes_of, contributions_of
-from tol3d.analyses.what_to_change_charts import changes_charts, changes_of_one
-from tol3d.analyses.what_to_change_table import changes_lines, changes_report, contributions_table
-from tol3d.distributions.normal import Normal
 from tol3d.report.chart_figure import save_charts
 from tol3d.report.page import page
 from tol3d.report.sheet import as_text
 from tol3d.scene import Scene
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import load, simulation_of
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.system.draw import Scalar
-from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.study.system.draw import Scalar
+from tol3d.study.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 from tol3d.units import Quantity
 
 Array = NDArray[np.float64]

@@ -11,7 +11,7 @@ from assembly_trials import assembled
 from framed_parts import MOVES, scene
 
 from tol3d.assembly.model.statuses import OK
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 COUNT = 120
 SLOW = ("pattern", "rest")

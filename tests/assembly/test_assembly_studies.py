@@ -9,9 +9,9 @@ from assembly_trials import constant, normal
 from datum_plate import SIGMAS, covariance, plate
 from places import SCENES
 
-from tol3d.runs.run import Run
 from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.runs.run import Run
+from tol3d.study.trials.draws import drawn
 
 COLUMNS = ("geometric:position", "analytic:position", "status:position", "hole x [um]")
 

@@ -14,18 +14,18 @@ from scipy.stats import norm
 
 from tol3d.assembly.zones import Bonus, SizedBy, Widened, catalogue, uniform_in
 from tol3d.assembly.zones.zone_draw import Process
-from tol3d.distributions import Distribution
-from tol3d.distributions.normal import Normal
-from tol3d.distributions.uniform import Uniform
 from tol3d.errors import SceneError
-from tol3d.runs.run import open_run
 from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of
-from tol3d.study.extremes import ends_together
-from tol3d.study.first_order import first_orders
-from tol3d.system.draw import JointDraw, Scalar
-from tol3d.system.each_planar import EachPlanar
-from tol3d.system.plain import PlainContributor
-from tol3d.system.stated import stated
+from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.study.effects.extremes import ends_together
+from tol3d.study.effects.first_order import first_orders
+from tol3d.study.runs.run import open_run
+from tol3d.study.system.draw import JointDraw, Scalar
+from tol3d.study.system.each_planar import EachPlanar
+from tol3d.study.system.plain import PlainContributor
+from tol3d.study.system.trials import stated
 
 Array = NDArray[np.float64]
 

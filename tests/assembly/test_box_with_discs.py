@@ -14,7 +14,7 @@ from tol3d.assembly.model.statuses import NO_CONTACT, OK
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.system import AssemblySystem
 from tol3d.assembly.torsors import method as torsors
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 Codes = NDArray[np.int8]

@@ -10,10 +10,10 @@ from places import ROOT, SCENES
 
 from tol3d import load_scene, run_scene
 from tol3d.assembly.grammar.builders import BuilderUnion
+from tol3d.cad.solids.cad import solid_of
+from tol3d.cad.solids.numbered_parts import Housing
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides
-from tol3d.solids.cad import solid_of
-from tol3d.solids.machined import Housing
 from tol3d.strict import Strict
 
 PAGE = (ROOT / "docs" / "builders.md").read_text("utf-8")

@@ -17,7 +17,7 @@ from tol3d.assembly.system import AssemblySystem
 from tol3d.assembly.torsors import method as torsors
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 Codes = NDArray[np.int8]

@@ -16,8 +16,8 @@ from tol3d.assembly.grammar.tolerances.location import PositionSpec
 from tol3d.assembly.moments import moments_of
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.draws import drawn
-from tol3d.system.contributor import Contributor
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

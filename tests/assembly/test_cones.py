@@ -14,7 +14,7 @@ from tol3d.assembly.model import Cone
 from tol3d.assembly.zones import Zone, catalogue, uniform_in
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 METHODS = ("exact", "analytic")

@@ -7,7 +7,7 @@ import pytest
 from assembly_trials import assembled, constant, uniform
 
 from tol3d.assembly.model.statuses import OK
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 POINTS = {"1": (10, 10, 0), "2": (90, 12, 0), "3": (50, 70, 0), "4": (15, 0, 6), "5": (85, 0, 6), "6": (0, 40, 6)}
 NORMALS = {**dict.fromkeys("123", (0, 0, 1)), **dict.fromkeys("45", (0, 1, 0)), "6": (1, 0, 0)}

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from scipy.stats import kstest
 
 from tol3d.assembly.zones import Bonus, Envelope, EnvelopedForm, SizedBy, Widened, catalogue, uniform_in
-from tol3d.distributions import TruncatedNormal, Uniform
 from tol3d.errors import SceneError
-from tol3d.study.draws import drawn
-from tol3d.study.extremes import ends_together
-from tol3d.study.first_order import first_orders
-from tol3d.study.worst_cases import worst_cases
-from tol3d.system.draw import Scalar
-from tol3d.system.plain import PlainContributor
+from tol3d.statistics.distributions import TruncatedNormal, Uniform
+from tol3d.study.effects.extremes import ends_together
+from tol3d.study.effects.first_order import first_orders
+from tol3d.study.effects.worst_cases import worst_cases
+from tol3d.study.system.draw import Scalar
+from tol3d.study.system.plain import PlainContributor
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

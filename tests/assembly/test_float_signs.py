@@ -9,7 +9,7 @@ from assembly_trials import assembled
 from numpy.typing import NDArray
 
 from tol3d.assembly.placing.method import features_placed
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from scipy.optimize import linprog
 from tol3d.assembly.zones import ZoneDraw
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from scipy.stats import norm
 
 from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

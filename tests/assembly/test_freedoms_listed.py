@@ -8,12 +8,12 @@ from places import SCENES
 from scipy.linalg import null_space
 from scipy.stats import ortho_group
 
-from tol3d.assembly.placing.asked import Asked
-from tol3d.assembly.placing.holding import held_by, in_words, taken
+from tol3d.assembly.placing.nominal_constraints import held_by, in_words, taken
+from tol3d.assembly.placing.placer import Asked
 from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.assembly.system import AssemblySystem
-from tol3d.machine.system import MachineSystem
+from tol3d.gearing.machine.system import MachineSystem
 from tol3d.report.page import Line, page
 from tol3d.simulate import Overrides, load, simulation_of
 

@@ -12,7 +12,7 @@ from scipy.optimize import linprog
 from tol3d.assembly.model.statuses import NO_BUILD, OK
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 COUNT = 10_000
 

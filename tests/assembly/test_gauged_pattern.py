@@ -11,13 +11,12 @@ from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
 from scipy.optimize import linprog, minimize
 
-from tol3d.assembly.placing.gauging import GaugedPattern
-from tol3d.assembly.torsors.common_opening import TurnedOpening
+from tol3d.assembly.placing.gauged_positions import GaugedPattern
+from tol3d.assembly.torsors.gauged_positions import TurnedOpening
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.draws import drawn
-from tol3d.system.stated import stated
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials, stated
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

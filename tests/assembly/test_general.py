@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from tol3d import SceneError, load_scene
-from tol3d.report.drawn_limits import drawn_limits
+from tol3d.report.check import drawn_limits
 from tol3d.report.page import Table
 from tol3d.scene import Scene
-from tol3d.standards import iso_2768
+from tol3d.statistics.standards import iso_2768
 
 PLATE = """scene: plate
 default_law: {kind: uniform}

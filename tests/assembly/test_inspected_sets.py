@@ -12,7 +12,7 @@ from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
 from tol3d.numerics.arrays import Array
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 PADS = ", ".join(f"plate.pad {k}" for k in range(1, 5))
 ASKED = f"""  pads set: {{kind: inspected_set, of: [{PADS}], free: oriented}}

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from scale import SIGMA, stack
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.study.first_order import first_orders
-from tol3d.study.overrides import simulation_of
-from tol3d.study.task import materials_of, method_of
+from tol3d.study.effects.first_order import first_orders
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.trials.overrides import simulation_of
 
 Array = NDArray[np.float64]
 

@@ -16,8 +16,8 @@ from tol3d.assembly.zones.float_draw import GaugeShift
 from tol3d.contact.openings import least_in_rooms
 from tol3d.errors import SceneError
 from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of
-from tol3d.study.draws import drawn
-from tol3d.study.first_order import first_orders
+from tol3d.study.effects.first_order import first_orders
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

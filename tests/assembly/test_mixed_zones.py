@@ -10,8 +10,8 @@ from scipy.optimize import linprog
 
 from tol3d.assembly.zones import Confined, Zone, ZoneDraw, catalogue, normal_in, uniform_in
 from tol3d.errors import InputError, SceneError
-from tol3d.study.draws import drawn
-from tol3d.study.first_order import first_orders
+from tol3d.study.effects.first_order import first_orders
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

@@ -33,7 +33,7 @@ from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.scene.entry import kind_of
 from tol3d.scene.place import KeyPath
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 

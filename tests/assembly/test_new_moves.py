@@ -27,9 +27,9 @@ from tol3d.errors import InputError
 from tol3d.import_path import named
 from tol3d.scene.entry import kind_of
 from tol3d.simulate import simulation_of
-from tol3d.study.draws import drawn
-from tol3d.system.mechanism import Mechanism
-from tol3d.system.stated import component_slices
+from tol3d.study.system.mechanism import Mechanism
+from tol3d.study.system.trials import component_slices
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 
@@ -143,12 +143,12 @@ def test_a_move_that_lacks_code_is_refused_as_it_is_registered(spec: type[Assemb
 
 TOLD_APART = {
     "tol3d/assembly/grammar/moves/assembly_move.py: AssemblyMoveSpec": 1,
-    "tol3d/assembly/grammar/moves/forgotten.py: AssemblyMoveSpec": 1,
-    "tol3d/machine/from_scene.py: AssemblyMoveSpec": 1,
+    "tol3d/assembly/grammar/moves/assembly_move.py: AssemblyMoveSpec": 1,
+    "tol3d/gearing/machine/from_scene.py: AssemblyMoveSpec": 1,
     "tol3d/assembly/placing/plan.py: RockingPlacer": 1,
     "tol3d/assembly/placing/plan.py: RoomPlacer": 1,
-    "tol3d/linkage/presenting/workspace_picture.py: CloseLoopSpec": 1,
-    "tol3d/linkage/presenting/workspace_picture.py: ClosedLoop": 1,
+    "tol3d/assembly/linkage/presenting/workspace_picture.py: CloseLoopSpec": 1,
+    "tol3d/assembly/linkage/presenting/workspace_picture.py: ClosedLoop": 1,
 }
 """Places that tell a kind of move by its class: those where other moves stand beside, and a move's own code. These may
 only become fewer."""

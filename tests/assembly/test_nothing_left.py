@@ -7,7 +7,7 @@ import pytest
 from assembly_trials import assembled
 
 from tol3d.errors import SceneError
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 METHODS = ("exact", "analytic")
 

@@ -12,7 +12,7 @@ from tol3d.report.check import parts_report
 from tol3d.report.page import Branch
 from tol3d.scene import read_scene
 from tol3d.scene.bundled import scene_path
-from tol3d.study.overrides import AS_WRITTEN, simulation_of
+from tol3d.study.trials.overrides import AS_WRITTEN, simulation_of
 
 
 def lines_of(branches: Sequence[Branch], depth: int = 0) -> Iterator[str]:

@@ -12,14 +12,14 @@ from fixtures import Command
 
 from tol3d import load_scene
 from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.cad.solids.own_program import run_program
 from tol3d.errors import GeometryError, RunError, SceneError
-from tol3d.execution.pools import Execution
 from tol3d.files import FileContent
-from tol3d.runs.run import open_run
 from tol3d.scene import scene_from_python
 from tol3d.simulate import run_scene, simulation_again
-from tol3d.solids.own_program import run_program
-from tol3d.study.overrides import Overrides
+from tol3d.study.execution.pools import Execution
+from tol3d.study.runs.run import open_run
+from tol3d.study.trials.overrides import Overrides
 
 BUILDER = """{kind: plate, length: 120 mm, width: 80 mm, thickness: 20 mm, holes: {
       bore: {at: [30 mm, 10 mm], diameter: 10 mm}, twin: {at: [-30 mm, 10 mm], diameter: 10 mm}},

@@ -15,16 +15,16 @@ from scipy.optimize import brentq
 from scipy.stats import norm
 
 from tol3d.assembly.model.statuses import NO_BUILD
-from tol3d.assembly.placing import engaging
 from tol3d.assembly.placing import method as placing
-from tol3d.assembly.placing.engaging import Engaging
+from tol3d.assembly.placing import play_move
+from tol3d.assembly.placing.play_move import Engaging
 from tol3d.assembly.placing.poses import Codes
 from tol3d.assembly.placing.world import World
 from tol3d.assembly.torsors import method as torsors
 from tol3d.contact.seat import Seated, seated
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def test_over_play_only_what_a_measure_reads_is_placed_again(monkeypatch: pytest
 
     as_it_is = Engaging.placed
     monkeypatch.setattr(Engaging, "placed", counted)
-    monkeypatch.setattr(engaging, "seated", seat)
+    monkeypatch.setattr(play_move, "seated", seat)
     method.answers(trials, system.measures)
     assert sorted(placed) == ["key in its way"] * 3 + ["plate on the pins"] * 3
     assert sorted(pushes) == [False] * 2 + [True] * 4

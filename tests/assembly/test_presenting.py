@@ -20,9 +20,9 @@ from tol3d.assembly.summary_types import AssemblyMeasureSummary
 from tol3d.errors import InputError
 from tol3d.report import export_run
 from tol3d.report.page import page
-from tol3d.runs.summary.kinds import default_kinds
 from tol3d.scene.entry import kind_of
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
+from tol3d.study.runs.summary.kinds import default_kinds
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from places import SCENES
 
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.errors import SceneError
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ import pytest
 
 from tol3d.scene.bundled import scene_path
 from tol3d.simulate import load, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 TRIALS = 25
 

@@ -19,10 +19,10 @@ from scipy.stats import kstest, norm
 
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.torsors import method as torsors
-from tol3d.distributions import TruncatedNormal
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.draws import drawn
-from tol3d.study.first_order import first_orders
+from tol3d.statistics.distributions import TruncatedNormal
+from tol3d.study.effects.first_order import first_orders
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from places import SCENES
 
 from tol3d import run_scene
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from tol3d.assembly.model.measures import Rocking
 from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.placer import Fixing
-from tol3d.assembly.placing.resting import Resting
+from tol3d.assembly.placing.rest_move import Resting
 from tol3d.assembly.torsors import method as torsors
 
 Array = NDArray[np.float64]

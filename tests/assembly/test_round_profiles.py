@@ -15,7 +15,7 @@ from scipy.stats import ks_2samp
 from tol3d.assembly.zones import Confined, Zone, catalogue, normal_in, uniform_in
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tol3d.assembly.presenting.shown_assembly import ShownAssembly, display
-from tol3d.runs.run import Run
 from tol3d.simulate import run_scene
-from tol3d.study.overrides import Overrides
+from tol3d.study.runs.run import Run
+from tol3d.study.trials.overrides import Overrides
 
 # a plate on one pin: its hole has between 0.02 and 0.2 mm more than the pin, or less than nothing in one of 44 trials
 SCENE = """

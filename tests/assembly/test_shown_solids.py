@@ -22,8 +22,8 @@ from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError
 from tol3d.report import export_run, view_run
 from tol3d.report.page import page
-from tol3d.runs.run import Run
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
+from tol3d.study.runs.run import Run
 
 Array = NDArray[np.float64]
 
@@ -227,5 +227,5 @@ def test_check_lists_solids_and_loads_no_cad_for_what_it_has_seen(
     def refuse() -> NoReturn:
         raise AssertionError("built again")
 
-    monkeypatch.setattr(sys.modules["tol3d.solids.display_mesh"], "cad", refuse)
+    monkeypatch.setattr(sys.modules["tol3d.cad.solids.display_mesh"], "cad", refuse)
     assert [(row.label, *row.cells) for row in page(*drawing_blocks(system)).tables[0].rows] == expected

@@ -10,7 +10,7 @@ from drafts import Draft, frame, turned
 from numpy.typing import NDArray
 from rigid_parts import RigidParts
 
-from tol3d.assembly.grammar.measures.contact import SurfaceGapSpec
+from tol3d.assembly.grammar.measures.gap import SurfaceGapSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Measured, Plane, RoundPlane, Shape
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.torsors import method as torsors

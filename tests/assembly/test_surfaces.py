@@ -10,7 +10,7 @@ from random_touches import KINDS, TWO, RandomTouch, random_touch
 from rigid_parts import RigidParts
 from scipy.optimize import lsq_linear
 
-from tol3d.assembly.grammar.measures.contact import SurfaceGapSpec
+from tol3d.assembly.grammar.measures.gap import SurfaceGapSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Measured, Plane, Point, RoundPlane
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing import method as placing

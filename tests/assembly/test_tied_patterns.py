@@ -20,7 +20,7 @@ from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.torsors import method as torsors
 from tol3d.contact.programme import Programme
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

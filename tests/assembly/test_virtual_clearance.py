@@ -12,13 +12,13 @@ from scipy.optimize import minimize
 from scipy.stats import halfnorm, norm, rayleigh
 
 from tol3d.assembly.placing.method import features_placed
-from tol3d.assembly.torsors.common_opening import CommonOpening
+from tol3d.assembly.torsors.gauged_positions import CommonOpening
 from tol3d.contact.certify import certificate
 from tol3d.contact.openings import opening
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
-from tol3d.study.draws import drawn
-from tol3d.system.stated import stated
+from tol3d.study.system.trials import stated
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ from fixtures import Command
 from scipy.stats import kstest, norm
 
 from tol3d.errors import SceneError
-from tol3d.runs.run import open_run
 from tol3d.simulate import Overrides, run_scene
-from tol3d.study.first_order import first_orders
+from tol3d.study.effects.first_order import first_orders
+from tol3d.study.runs.run import open_run
 
 WIDTH, A, B, LENGTH = 0.1, 100.0, 60.0, 40.0
 COUNT = 200_000

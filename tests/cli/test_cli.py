@@ -20,15 +20,15 @@ from ruamel.yaml import YAML
 from schemas import validate
 
 from tol3d import Overrides, Scene, load_scene, run_scene
+from tol3d.cad.solids.cache import CacheWarning
 from tol3d.cli import studies
 from tol3d.errors import InputError
 from tol3d.gearing.model import model_from_scene
 from tol3d.gearing.system import strips_of
 from tol3d.report import picture
-from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
-from tol3d.solids.cache import CacheWarning
-from tol3d.study.task import workers_for
+from tol3d.study.results.task import workers_for
+from tol3d.study.runs.run import open_run
 
 SPUR = str(SCENES / "spur_pair.yaml")
 TABLES = ("summary.json", "contributors.csv", "correlations.csv")

@@ -4,7 +4,7 @@ import pytest
 from fixtures import Command
 from toys import registered
 
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 
 PLACES = Mechanism(name="places", commands=(f"{__name__}:least_place", f"{__name__}:broken_place"))
 

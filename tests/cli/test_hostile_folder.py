@@ -17,7 +17,7 @@ PYTHON_FINDS_IT_FIRST = frozenset({"tol3d"})  # by `python -m tol3d.…`, before
 HANGS = 300.0  # s
 
 POOL = """
-from tol3d.execution.pools import Concurrency, pool_of
+from tol3d.study.execution.pools import Concurrency, pool_of
 with pool_of(2, None, Concurrency.PROCESSES) as pool:
     print(*(pool.submit(pow, k, 2).result() for k in range(6)))
 """
@@ -29,7 +29,7 @@ numba.core.config.reload_config()
 print(matplotlib.rcParams["text.usetex"], numba.core.config.CPU_NAME, numba.core.config.HTML or "-")
 """
 COMPILING = """
-from tol3d.execution.pools import Concurrency, pool_of
+from tol3d.study.execution.pools import Concurrency, pool_of
 exec("from tol3d.contact.openings import common_openings; common_openings.make()")
 with pool_of(2, None, Concurrency.PROCESSES) as pool:
     pool.submit(exec, "from tol3d.numerics.programme import ranges; ranges.make()").result()

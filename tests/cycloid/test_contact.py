@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from cycloid_stages import CRANK_CIRCLE, PROFILE, SHORTENING, Array, digest_draw, erring, perfect, searched
 
-from tol3d.cycloid.exact.contact import (
+from tol3d.gearing.cycloid.exact.contact import (
     AsMade,
     bearings,
     contact_shape,
@@ -16,8 +16,8 @@ from tol3d.cycloid.exact.contact import (
     linkage,
     pin_centres,
 )
-from tol3d.cycloid.model.profile import DiscProfile, Modification
-from tol3d.cycloid.model.stage import Touching
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.model.stage import Touching
 
 WINDOW = 0.7  # least lever of a working pin over a Zc
 SUN_HELD = 1.5  # turns of a planet in space per turn of the carrier: 1 + zs / zp with zp = 2 zs

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from cycloid_stages import CRANK_CIRCLE, PROFILE
 
-from tol3d.cycloid.exact.contact import ContactStage
-from tol3d.cycloid.first_order.linear import LinearStage
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.gearing.cycloid.exact.contact import ContactStage
+from tol3d.gearing.cycloid.first_order.linear import LinearStage
+from tol3d.gearing.cycloid.model.stage import Deviated
 
 STAGE = (PROFILE, 2, 3, CRANK_CIRCLE, 1.5, 0.7)
 ARC_SECOND = math.pi / 648_000

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from oracles.placed_discs import PlacedDiscs
 
-from tol3d.cycloid.exact.contact import ContactStage
-from tol3d.cycloid.model.profile import DiscProfile, Modification
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.gearing.cycloid.exact.contact import ContactStage
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.model.stage import Deviated
 
 PROFILE = DiscProfile(40, 114.5, 5.0, 2.2, Modification(-0.02, -0.0128, 2e-5))
 CRANK_CIRCLE = 63.0

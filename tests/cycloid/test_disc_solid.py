@@ -15,11 +15,11 @@ from OCP.gp import gp_Pnt
 from oracles.rolling_disc import Outline, distance, pin_in_disc
 from scipy.special import ellipe
 
-from tol3d.cycloid.model.profile import DiscProfile, Modification
-from tol3d.cycloid.model.shapes import CycloidDisc, DiscHoles, lobe_strips
-from tol3d.cycloid.model.shapes_cad import FLANK_ERROR, disc, knots
+from tol3d.cad.solids import display_mesh
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.model.shapes import CycloidDisc, DiscHoles, lobe_strips
+from tol3d.gearing.cycloid.model.shapes_cad import FLANK_ERROR, disc, knots
 from tol3d.parts.named_solid import NamedSolid
-from tol3d.solids import display_mesh
 
 RV_250 = DiscProfile(pins=40, pin_circle_radius=114.5, pin_radius=5.0, eccentricity=2.2)
 USUAL = replace(RV_250, modification=Modification(-0.02, -0.0128, 2e-5))

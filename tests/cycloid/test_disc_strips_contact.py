@@ -6,12 +6,12 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from tol3d.cycloid.exact.contact import ContactStage, leaning
-from tol3d.cycloid.model.profile import DiscProfile, Modification
-from tol3d.cycloid.model.shapes import CycloidDisc, DiscHoles, lobe_strips
-from tol3d.cycloid.model.stage import Deviated
-from tol3d.cycloid.reducer.witness import StripContact
-from tol3d.solids.distance import NearestPoints, cylinder, mesh_surface, put, sphere
+from tol3d.cad.solids.distance import NearestPoints, cylinder, mesh_surface, put, sphere
+from tol3d.gearing.cycloid.exact.contact import ContactStage, leaning
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.model.shapes import CycloidDisc, DiscHoles, lobe_strips
+from tol3d.gearing.cycloid.model.stage import Deviated
+from tol3d.gearing.cycloid.reducer.witness import StripContact
 
 PROFILE = DiscProfile(40, 114.5, 5.0, 2.2, Modification(-0.02, -0.0128, 2e-5))
 STAGE = ContactStage(PROFILE, 2, 3, 63.0, 1.5, 0.7)

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.cycloid.from_scene import rv_system
-from tol3d.cycloid.model.profile import UNMODIFIED
-from tol3d.cycloid.reducer.deviated import RVDeviated
-from tol3d.cycloid.reducer.rv_set import RVSet
-from tol3d.cycloid.reducer.turning import ExactTurning, LinearTurning
 from tol3d.errors import SceneError
+from tol3d.gearing.cycloid.from_scene import rv_system
+from tol3d.gearing.cycloid.model.profile import UNMODIFIED
+from tol3d.gearing.cycloid.reducer.deviated import RVDeviated
+from tol3d.gearing.cycloid.reducer.rv_set import RVSet
+from tol3d.gearing.cycloid.reducer.turning import ExactTurning, LinearTurning
 
 Array = NDArray[np.float64]
 SCENE = SCENES / "every_cycloid_field.yaml"

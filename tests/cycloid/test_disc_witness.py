@@ -6,8 +6,8 @@ import pytest
 from places import SCENES
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.cycloid.from_scene import rv_system
-from tol3d.cycloid.system import RVSystem
+from tol3d.gearing.cycloid.from_scene import rv_system
+from tol3d.gearing.cycloid.system import RVSystem
 
 
 @pytest.fixture(scope="module")

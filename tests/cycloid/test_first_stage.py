@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.cycloid.from_scene import rv_system
-from tol3d.cycloid.reducer.deviated import RVDeviated
-from tol3d.cycloid.reducer.first_stage import crank_turns, first_order_mesh, placed_mesh
-from tol3d.cycloid.reducer.rv_set import RVSet
-from tol3d.cycloid.reducer.turning import ExactTurning, LinearTurning
+from tol3d.gearing.cycloid.from_scene import rv_system
+from tol3d.gearing.cycloid.reducer.deviated import RVDeviated
+from tol3d.gearing.cycloid.reducer.first_stage import crank_turns, first_order_mesh, placed_mesh
+from tol3d.gearing.cycloid.reducer.rv_set import RVSet
+from tol3d.gearing.cycloid.reducer.turning import ExactTurning, LinearTurning
 from tol3d.gears import LEFT, RIGHT, Displaced, Flank
 
 OWN: RVSet = rv_system(load_scene(SCENES / "rv_250aii.yaml")).own

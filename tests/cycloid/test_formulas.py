@@ -6,12 +6,19 @@ from typing import cast
 import pytest
 from rv_250 import TOLERANCES, rv_250
 
-from tol3d.cycloid.presenting import PRESENTER
-from tol3d.cycloid.presenting.formulas import stage_blocks
-from tol3d.cycloid.reducer.formula import SOURCES, PaperSources, Source, sigma_of, stage_by_formula, sun_held_factor
+from tol3d.gearing.cycloid.presenting import PRESENTER
+from tol3d.gearing.cycloid.presenting.tables import stage_blocks
+from tol3d.gearing.cycloid.reducer.formula import (
+    SOURCES,
+    PaperSources,
+    Source,
+    sigma_of,
+    stage_by_formula,
+    sun_held_factor,
+)
 from tol3d.report.page import Page, Table
 from tol3d.report.presenter import ShowsNotes
-from tol3d.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.run import RunSummary
 
 SUN_HELD = sun_held_factor(39, 21, 42)
 

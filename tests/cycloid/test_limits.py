@@ -8,8 +8,15 @@ import numpy as np
 import pytest
 from oracles.rolling_disc import Outline, distance
 
-from tol3d.cycloid.model.limits import faults, flank_gaps, largest_pin_radius, largest_window, least_gap, lobes_fault
-from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.model.limits import (
+    faults,
+    flank_gaps,
+    largest_pin_radius,
+    largest_window,
+    least_gap,
+    lobes_fault,
+)
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
 
 RV_250 = DiscProfile(pins=40, pin_circle_radius=114.5, pin_radius=5.0, eccentricity=2.2)
 USUAL = Modification(-0.02, -0.02 * math.sqrt(1 - (88 / 114.5) ** 2))

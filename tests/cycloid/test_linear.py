@@ -11,11 +11,11 @@ from oracles.cycloid_monte_carlo import units as monte_carlo
 from oracles.deviated_cycloid import Disc, Stage, first_turn
 from rv_250 import CRANK_CIRCLE, SHORTENING, nothing, random_deviations, rv_250, stage_of
 
-from tol3d.cycloid.exact.contact import ContactStage
-from tol3d.cycloid.first_order.linear import LinearStage, Sense
-from tol3d.cycloid.model.profile import DiscProfile
-from tol3d.cycloid.model.stage import Deviated
-from tol3d.cycloid.reducer.neglected import BentStage
+from tol3d.gearing.cycloid.exact.contact import ContactStage
+from tol3d.gearing.cycloid.first_order.linear import LinearStage, Sense
+from tol3d.gearing.cycloid.model.profile import DiscProfile
+from tol3d.gearing.cycloid.model.stage import Deviated
+from tol3d.gearing.cycloid.reducer.neglected import BentStage
 
 Array = NDArray[np.float64]
 

@@ -7,9 +7,9 @@ from cycloid_stages import CRANK_CIRCLE, PROFILE
 from numpy.typing import NDArray
 from rv_250 import rv_250
 
-from tol3d.cycloid.exact.rest import RestStage
-from tol3d.cycloid.first_order.linear_rest import LinearRest
-from tol3d.cycloid.model.stage import Deviated, Play
+from tol3d.gearing.cycloid.exact.rest import RestStage
+from tol3d.gearing.cycloid.first_order.linear_rest import LinearRest
+from tol3d.gearing.cycloid.model.stage import Deviated, Play
 
 Array = NDArray[np.float64]
 

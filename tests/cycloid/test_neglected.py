@@ -5,9 +5,9 @@ import pytest
 from places import SCENES
 
 from tol3d import Overrides, load_scene
-from tol3d.cycloid.system import RVSystem
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
+from tol3d.gearing.cycloid.system import RVSystem
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 
 @pytest.mark.slow

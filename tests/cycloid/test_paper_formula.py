@@ -11,7 +11,7 @@ from rv_250 import TOLERANCES, rv_250
 from scipy.integrate import quad
 from scipy.special import i0e
 
-from tol3d.cycloid.reducer.formula import (
+from tol3d.gearing.cycloid.reducer.formula import (
     SineSum,
     best_pin_lever,
     first_principles_totals,

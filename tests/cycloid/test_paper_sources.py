@@ -3,7 +3,7 @@
 import pytest
 from rv_250 import TOLERANCES
 
-from tol3d.cycloid.reducer.formula import RUN_OUTS, SOURCES, PaperSources, sigma_of
+from tol3d.gearing.cycloid.reducer.formula import RUN_OUTS, SOURCES, PaperSources, sigma_of
 
 
 def test_standard_deviations_scale_back_to_the_tolerances_that_they_came_of() -> None:

@@ -14,13 +14,13 @@ from places import SCENES
 from rv_250 import nothing, rv_250, stage_of
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.cycloid.exact.contact import contact_shape, first_contact
-from tol3d.cycloid.from_scene import rv_system
-from tol3d.cycloid.reducer.deviated import RVDeviated
-from tol3d.cycloid.reducer.turning import LinearTurning, Turned
-from tol3d.cycloid.system import RVSystem
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
+from tol3d.gearing.cycloid.exact.contact import contact_shape, first_contact
+from tol3d.gearing.cycloid.from_scene import rv_system
+from tol3d.gearing.cycloid.reducer.deviated import RVDeviated
+from tol3d.gearing.cycloid.reducer.turning import LinearTurning, Turned
+from tol3d.gearing.cycloid.system import RVSystem
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 Array = NDArray[np.float64]
 

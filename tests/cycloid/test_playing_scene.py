@@ -10,13 +10,13 @@ from oracles.playing_reducer import PlayingReducer
 from places import SCENES
 
 from tol3d import SceneError, load_scene
-from tol3d.cycloid.reducer.resting import exact_turning
-from tol3d.cycloid.reducer.trials import RVTrials
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
-from tol3d.study.simulation import Simulation
-from tol3d.study.tally import Tally, grids_of
+from tol3d.gearing.cycloid.reducer.resting import exact_turning
+from tol3d.gearing.cycloid.reducer.trials import RVTrials
+from tol3d.study.tallies.tally import Tally, grids_of
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
+from tol3d.study.trials.simulation import Simulation
 
 Array = NDArray[np.float64]
 

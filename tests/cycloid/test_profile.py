@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from oracles.rolling_disc import Outline, distance, pin_in_disc, swept
 from scipy.optimize import brentq
 
-from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
 
 RV_250 = DiscProfile(pins=40, pin_circle_radius=114.5, pin_radius=5.0, eccentricity=2.2)
 SMALL = DiscProfile(pins=12, pin_circle_radius=30.0, pin_radius=2.0, eccentricity=1.0)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from disc_profile import draw_profile, magnified_by
 
-from tol3d.cycloid.model.profile import UNMODIFIED, DiscProfile, Modification
+from tol3d.gearing.cycloid.model.profile import UNMODIFIED, DiscProfile, Modification
 
 RV_250 = DiscProfile(pins=40, pin_circle_radius=114.5, pin_radius=5.0, eccentricity=2.2)
 

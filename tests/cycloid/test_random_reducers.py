@@ -9,9 +9,9 @@ from oracles.drawn_columns import DrawnColumns
 from oracles.whole_reducer import Numbers, WholeReducer
 
 from tol3d import load_scene
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 ARCMIN = np.degrees(1.0) * 60
 TRIALS = 3

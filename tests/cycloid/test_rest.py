@@ -10,8 +10,8 @@ from cycloid_stages import CRANK_CIRCLE, PROFILE
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from tol3d.cycloid.exact.rest import RestStage
-from tol3d.cycloid.model.stage import Deviated, Play
+from tol3d.gearing.cycloid.exact.rest import RestStage
+from tol3d.gearing.cycloid.model.stage import Deviated, Play
 from tol3d.numerics.programme import NO_ROOM, OK
 
 Array = NDArray[np.float64]

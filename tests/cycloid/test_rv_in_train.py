@@ -17,22 +17,22 @@ from toys.drives.rope import ROPES
 from toys.registered import known
 
 from tol3d import Overrides, Run, SceneError, check_scene, compare_runs, load_scene, open_run, run_scene
-from tol3d.cycloid.from_scene import rv_system
-from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
-from tol3d.cycloid.rv_link import RVLink
+from tol3d.gearing.cycloid.from_scene import rv_system
+from tol3d.gearing.cycloid.reducer.resting import exact_turning, linear_turning
+from tol3d.gearing.cycloid.rv_link import RVLink
 from tol3d.gearing.links import FreeTurn, LinkTrials
+from tol3d.gearing.planetary.from_scene import planetary_system
 from tol3d.gearing.play.linked import link_trials
 from tol3d.gearing.presenting import PRESENTER
 from tol3d.gearing.system import GearSystem, gear_system
-from tol3d.planetary.from_scene import planetary_system
 from tol3d.report.table import run_report
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
-from tol3d.study.versions import installed_versions
-from tol3d.system.mechanism import mechanism_of, requires_of
-from tol3d.system.method import ANALYTIC_METHOD, Answers
-from tol3d.system.system import System
-from tol3d.system.trials import Trials
+from tol3d.study.results.versions import installed_versions
+from tol3d.study.system.mechanism import mechanism_of, requires_of
+from tol3d.study.system.method import ANALYTIC_METHOD, Answers
+from tol3d.study.system.system import System
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 Array = NDArray[np.float64]
 

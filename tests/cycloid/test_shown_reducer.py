@@ -9,18 +9,18 @@ import pytest
 from places import SCENES
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.cycloid.from_scene import rv_system
-from tol3d.cycloid.presenting import PRESENTER
-from tol3d.cycloid.presenting.shown_reducer import RVDisplay, touching_words
-from tol3d.cycloid.reducer.deviated import RVDeviated
-from tol3d.cycloid.reducer.shown import ShownReducer, carrier_angles, swung, turned
-from tol3d.cycloid.system import RVSystem
 from tol3d.errors import InputError
+from tol3d.gearing.cycloid.from_scene import rv_system
+from tol3d.gearing.cycloid.presenting import PRESENTER
+from tol3d.gearing.cycloid.presenting.shown_reducer import RVDisplay, touching_words
+from tol3d.gearing.cycloid.reducer.deviated import RVDeviated
+from tol3d.gearing.cycloid.reducer.shown import ShownReducer, carrier_angles, swung, turned
+from tol3d.gearing.cycloid.system import RVSystem
 from tol3d.report.body import World
 from tol3d.report.motion import motion_of
 from tol3d.simulate import replay
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 SCENE = SCENES / "rv_250aii.yaml"
 

@@ -12,17 +12,17 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 
-from tol3d.cycloid.exact.contact import ContactStage
-from tol3d.cycloid.exact.places import StagePlaces, StageShapes, usual_shapes
-from tol3d.cycloid.model.limits import circle_fault, hole_faults, largest_hole, lobe_reach
-from tol3d.cycloid.model.profile import DiscProfile, Modification
-from tol3d.cycloid.model.shapes import CrankSection, Crankshaft, DiscHoles
-from tol3d.cycloid.model.shapes_cad import carrier_of, crank, ring
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.cad.solids import PosedPart, export_step
+from tol3d.cad.solids.cad import solid_of
 from tol3d.errors import GeometryError
+from tol3d.gearing.cycloid.exact.contact import ContactStage
+from tol3d.gearing.cycloid.exact.places import StagePlaces, StageShapes, usual_shapes
+from tol3d.gearing.cycloid.model.limits import circle_fault, hole_faults, largest_hole, lobe_reach
+from tol3d.gearing.cycloid.model.profile import DiscProfile, Modification
+from tol3d.gearing.cycloid.model.shapes import CrankSection, Crankshaft, DiscHoles
+from tol3d.gearing.cycloid.model.shapes_cad import carrier_of, crank, ring
+from tol3d.gearing.cycloid.model.stage import Deviated
 from tol3d.gears import SpurGear
-from tol3d.solids import PosedPart, export_step
-from tol3d.solids.cad import solid_of
 
 CLEAR = 0.02  # mm, all round the lobes
 RV_250 = DiscProfile(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tol3d.distributions.arcsine import Arcsine
+from tol3d.statistics.distributions.arcsine import Arcsine
 
 
 def test_it_is_a_sine_at_a_random_phase() -> None:

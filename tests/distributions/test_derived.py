@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tol3d.distributions import Distribution, Normal, Triangular, Uniform
-from tol3d.distributions.derived import Derived
 from tol3d.numerics.arrays import Array
+from tol3d.statistics.distributions import Distribution, Normal, Triangular, Uniform
+from tol3d.statistics.distributions.derived import Derived
 
 U = (np.arange(200) + 0.5) / 200
 BEND = 0.3  # 1/mm, hundreds of times what pins have

@@ -13,7 +13,9 @@ from pydantic import TypeAdapter, ValidationError
 from scipy import integrate, stats
 from thinned import thinned
 
-from tol3d.distributions import (
+from tol3d.errors import SceneError
+from tol3d.files import read_file
+from tol3d.statistics.distributions import (
     Constant,
     Distribution,
     DistributionSpec,
@@ -25,9 +27,7 @@ from tol3d.distributions import (
     TruncatedNormal,
     Uniform,
 )
-from tol3d.distributions.empirical import Draws
-from tol3d.errors import SceneError
-from tol3d.files import read_file
+from tol3d.statistics.distributions.empirical import Draws
 
 UNION = TypeAdapter(StatedDistribution)
 SAMPLE = np.sort(np.random.default_rng(7).normal(0.01, 0.003, 41))
@@ -492,7 +492,7 @@ def test_a_missing_or_huge_file_is_refused(tmp_path: Path) -> None:
 
 def test_reading_a_scene_does_without_scipy_special(tmp_path: Path) -> None:
     code = (
-        "import sys; from tol3d.distributions import StatedDistribution; from pydantic import TypeAdapter\n"
+        "import sys; from tol3d.statistics.distributions import StatedDistribution; from pydantic import TypeAdapter\n"
         "read = TypeAdapter(StatedDistribution).validate_python\n"
         "spec = read({'kind': 'truncated_normal', 'mean': '0 um', 'sigma': '1 um', 'lower': '0 um', 'upper': '2 um'})\n"
         "law = spec.resolve(None); print(law.mean, law.variance, law.low, law.high)\n"

@@ -12,12 +12,12 @@ from places import ROOT
 
 import tol3d
 from tol3d import Scene, load_scene
-from tol3d.distributions import Normal
-from tol3d.distributions.normal import NormalSpec
 from tol3d.errors import InputError, SceneError
-from tol3d.report.drawn_limits import drawn_limits
+from tol3d.report.check import drawn_limits
 from tol3d.report.page import Table
-from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.scene.bases import ToleranceSpec
+from tol3d.statistics.distributions import Normal
+from tol3d.statistics.distributions.normal import NormalSpec
 
 SMALL = """scene: small
 parts:

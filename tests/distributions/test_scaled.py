@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from tol3d import InputError
-from tol3d.distributions.arcsine import Arcsine, ArcsineSpec
-from tol3d.distributions.base import Distribution
-from tol3d.distributions.constant import Constant
-from tol3d.distributions.empirical import Empirical
-from tol3d.distributions.normal import Normal, NormalSpec
-from tol3d.distributions.rayleigh import Rayleigh
-from tol3d.distributions.triangular import Triangular
-from tol3d.distributions.truncated_normal import TruncatedNormal, TruncatedNormalSpec
-from tol3d.distributions.uniform import Uniform, UniformSpec
+from tol3d.statistics.distributions.arcsine import Arcsine, ArcsineSpec
+from tol3d.statistics.distributions.base import Distribution
+from tol3d.statistics.distributions.constant import Constant
+from tol3d.statistics.distributions.empirical import Empirical
+from tol3d.statistics.distributions.normal import Normal, NormalSpec
+from tol3d.statistics.distributions.rayleigh import Rayleigh
+from tol3d.statistics.distributions.triangular import Triangular
+from tol3d.statistics.distributions.truncated_normal import TruncatedNormal, TruncatedNormalSpec
+from tol3d.statistics.distributions.uniform import Uniform, UniformSpec
 
 U = (np.arange(200) + 0.5) / 200
 

@@ -14,22 +14,22 @@ from fixtures import Command
 from foreign_parts import nist_file, slotted_block, solid, step_file
 
 from tol3d.apps.drafting import scene_from
-from tol3d.apps.drafting.dimensions import distance_entry, enveloped
+from tol3d.apps.drafting.drawn_part import distance_entry, enveloped
 from tol3d.apps.drafting.entry import Entry, Scene, Wording
 from tol3d.apps.drafting.fixture import seat_and_pins, three_two_one
 from tol3d.apps.drafting.parts import drafted_parts, read_files
-from tol3d.apps.drafting.touching import TOUCHING, overlap
+from tol3d.apps.drafting.touching_faces import TOUCHING, overlap
 from tol3d.apps.drafting.words import Names, comment, scalar
 from tol3d.assembly.model import Cone
 from tol3d.assembly.system import AssemblySystem
+from tol3d.cad.step import read_step_text
+from tol3d.cad.step.found_features import FoundFeature
+from tol3d.cad.step.reading import read_step
 from tol3d.files import FileContent, read_file
 from tol3d.scene import Scene as SceneOfFile
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
-from tol3d.step import read_step_text
-from tol3d.step.found import FoundFeature
-from tol3d.step.reading import read_step
-from tol3d.study.draws import drawn
-from tol3d.system.stated import nominal_build
+from tol3d.study.system.trials import nominal_build
+from tol3d.study.trials.draws import drawn
 
 HOSTILE = (
     "*zones",

@@ -13,13 +13,13 @@ from foreign_parts import nist_file
 from places import TESTS
 
 from tol3d.apps.drafting import Draft, scene_from
-from tol3d.apps.drafting.zones import SMALLEST_ZONE
+from tol3d.apps.drafting.drawn_part import SMALLEST_ZONE
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.system import AssemblySystem
 from tol3d.files import FileContent
 from tol3d.numerics.arrays import Array
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 TRIALS = 2000
 MANY = 100_000

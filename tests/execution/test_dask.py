@@ -18,10 +18,10 @@ from toys.parabola import PARABOLA
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, Run, run_scene
-from tol3d.execution import pools as execution_module
-from tol3d.execution.pools import Execution
 from tol3d.simulate import Watch
-from tol3d.study import blocks as block_module
+from tol3d.study.execution import pools as execution_module
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results import task as block_module
 
 pytest.importorskip("distributed")
 

@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 from places import SPUR_PAIR
 
 from tol3d import Overrides, RunError, run_scene
-from tol3d.execution.folding import Columns, Plan, run_blocks
-from tol3d.execution.pools import CALLS_A_SLOT, Concurrency, Execution, InThisProcess, Ready, in_order, pool_of
 from tol3d.gearing.model import Model
-from tol3d.runs.checkpoint import Checkpoint, CheckpointWarning
-from tol3d.statistics import Moments
-from tol3d.study import blocks as block_module
-from tol3d.study.task import Task
-from tol3d.study.versions import installed_versions
+from tol3d.statistics.estimates import Moments
+from tol3d.study.execution.folding import Columns, Plan, run_blocks
+from tol3d.study.execution.pools import CALLS_A_SLOT, Concurrency, Execution, InThisProcess, Ready, in_order, pool_of
+from tol3d.study.results import task as block_module
+from tol3d.study.results.task import Task
+from tol3d.study.results.versions import installed_versions
+from tol3d.study.runs.checkpoint import Checkpoint, CheckpointWarning
 
 BLOCK = 2000
 

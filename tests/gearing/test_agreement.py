@@ -15,12 +15,11 @@ from oracles.poses import world_from_gears
 from oracles.thickness import thickness_of
 from scipy.spatial.transform import Rotation
 
-from tol3d.distributions import Uniform
 from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.engines import INTERFERES, OK
 from tol3d.gearing.engines.gaps import Gaps
-from tol3d.gearing.meshing.backlash import measure_backlash
 from tol3d.gearing.meshing.mesh import Meshing
+from tol3d.gearing.meshing.seats import measure_backlash
 from tol3d.gearing.model import (
     Backlash,
     Contributor,
@@ -35,7 +34,8 @@ from tol3d.gearing.model import (
 from tol3d.gearing.model.model import Housing
 from tol3d.gearing.stack_up import analytic_backlash, closed_form
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
-from tol3d.gears.flank import Flank
+from tol3d.gears.toothed_gear import Flank
+from tol3d.statistics.distributions import Uniform
 
 ALPHA = math.radians(20.0)
 STACK_UP_BOUND = 0.15e-3  # mm; 0.05 um of squares in the first order, 0.1 um of the strips

@@ -11,7 +11,6 @@ from of_kind import of_kind
 from places import SPUR_PAIR
 
 from tol3d import Overrides, Scene, load_scene, run_scene
-from tol3d.distributions import Normal, Rayleigh, Uniform
 from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import (
     AxisOffset,
@@ -29,6 +28,7 @@ from tol3d.gearing.model import (
 )
 from tol3d.gearing.stack_up import analytic_backlash, closed_form, stack_of
 from tol3d.gears import SpurGear, SpurPair
+from tol3d.statistics.distributions import Normal, Rayleigh, Uniform
 
 SIN, COS = math.sin(math.radians(20)), math.cos(math.radians(20))
 

@@ -23,13 +23,13 @@ from scipy.spatial.transform import Rotation
 from tol3d import Scene
 from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines import OK, Engine
-from tol3d.gearing.meshing.backlash import measure_backlash
 from tol3d.gearing.meshing.mesh import Meshing
+from tol3d.gearing.meshing.seats import measure_backlash
 from tol3d.gearing.model import Backlash, GearPart, Mesh, Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, pitch_angles
-from tol3d.gears.flank import Flank
+from tol3d.gears.toothed_gear import Flank
 from tol3d.simulate import load
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials
 
 ALPHA = math.radians(20.0)
 SIN = math.sin(ALPHA)

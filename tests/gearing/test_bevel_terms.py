@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tol3d.distributions.normal import Normal
 from tol3d.gearing.effects import AxisOffset, AxisTilt, Effect, TurningOffset
 from tol3d.gearing.model import Contributor, Reading
-from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
-from tol3d.gearing.stack_up.term import Role
+from tol3d.gearing.stack_up.term import NominalMesh, Role
 from tol3d.gearing.stack_up.terms import contribution
 from tol3d.gearing.system import GearSystem
 from tol3d.gears import BevelPair
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.system.draw import Planar, Scalar
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.study.system.draw import Planar, Scalar
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,6 @@ from places import SCENES
 from shipped import shipped
 
 from tol3d import load_scene
-from tol3d.distributions import Distribution
 from tol3d.gearing import effects
 from tol3d.gearing.builds.build import build
 from tol3d.gearing.builds.displacements import displacements
@@ -28,11 +27,12 @@ from tol3d.gearing.effects import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
+from tol3d.gearing.engines.exact.deviation_sums import compiled_displacements
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading, Scalar, model_from_scene
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gearing.stack_up.terms import contribution
 from tol3d.gears import RIGHT, SpurGear, SpurPair
+from tol3d.statistics.distributions import Distribution
 
 SINGLE = [
     value

@@ -29,11 +29,11 @@ from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, MeshReading
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import Gaps
-from tol3d.gearing.meshing.backlash import measure_backlash, read_backlash
 from tol3d.gearing.meshing.mesh import Meshing
+from tol3d.gearing.meshing.seats import measure_backlash, read_backlash
 from tol3d.gearing.model import Backlash, Reading
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
-from tol3d.gears.flank import Flank
+from tol3d.gears.toothed_gear import Flank
 
 ALPHA = math.radians(20.0)
 WHOLE_FACE = Reading()

@@ -18,8 +18,8 @@ from tol3d.errors import GeometryError
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import MeshReading
-from tol3d.gearing.meshing.backlash import measure_backlash, read_backlash
 from tol3d.gearing.meshing.mesh import Meshing
+from tol3d.gearing.meshing.seats import measure_backlash, read_backlash
 from tol3d.gearing.model import Backlash, Reading
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, InternalPair, SpurGear, one_tooth_share
 

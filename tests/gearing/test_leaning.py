@@ -24,11 +24,11 @@ from tol3d.gearing.slopes.coefficients import coefficients_of
 from tol3d.gearing.stack_up import closed_form, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_shares
 from tol3d.gearing.system import GearSystem
-from tol3d.statistics.variance_shares import RegressorSums, shares
-from tol3d.study.regressors import regressor_groups, regressors
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.system.closed_form import ClosedForm
+from tol3d.statistics.estimates.variance_shares import RegressorSums, shares
+from tol3d.study.effects.regressors import regressor_groups, regressors
+from tol3d.study.system.closed_form import ClosedForm
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 ALPHA = math.radians(20.0)
 HEIGHTS = (-20.0, 90.0)  # mm; of the bearings

@@ -23,7 +23,6 @@ from toys.parabola import PARABOLA
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, Run, SceneError, load_scene, replay, run_scene
-from tol3d.execution.pools import Execution
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.links import Reducer
 from tol3d.gearing.model import model_from_scene
@@ -32,8 +31,9 @@ from tol3d.gearing.model.links import Link, freed_turn, load_path_between, turns
 from tol3d.gearing.presenting.whole_trains import whole_trains
 from tol3d.gearing.shown.display import seated_build
 from tol3d.gearing.slopes.sensitivity import sensitivities
-from tol3d.study.versions import installed_versions
-from tol3d.system.trials import Trials
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results.versions import installed_versions
+from tol3d.study.system.trials import Trials
 
 Array = NDArray[np.float64]
 

@@ -27,7 +27,7 @@ from tol3d.gearing.model.mesh_measures import reader_like
 from tol3d.gearing.model.networks import Network, network_path
 from tol3d.gearing.model.train_measures import network_stage
 from tol3d.gearing.slopes.sensitivity import sensitivities
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials
 
 Array = NDArray[np.float64]
 SPLIT = (SCENES / "split_train.yaml").read_text("utf-8")

@@ -16,12 +16,11 @@ import pytest
 
 from tol3d import Overrides, Run, Scene, load_scene, run_scene
 from tol3d.gearing.builds.build import build
-from tol3d.gearing.builds.displacements import Displacement, displacements
+from tol3d.gearing.builds.displacements import FLANK_OFFSET, Displacement, displacements
 from tol3d.gearing.builds.rates import build_rates
-from tol3d.gearing.builds.slots import FLANK_OFFSET
 from tol3d.gearing.effects import Effect
 from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
+from tol3d.gearing.engines.exact.deviation_sums import compiled_displacements
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading, model_from_scene
@@ -29,11 +28,11 @@ from tol3d.gearing.model.nominal import Nominal
 from tol3d.gearing.slopes.coefficients import mean_slopes
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import Term, closed_form, stack_of
-from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
+from tol3d.gearing.stack_up.term import NominalMesh
 from tol3d.gearing.stack_up.terms import NOTHING, Contribution, contributes
 from tol3d.gears import GearPair
 from tol3d.scene import Grammar
-from tol3d.system.stated import stated
+from tol3d.study.system.trials import stated
 
 # what a new kind of tolerance is: four pieces, each of which would be a file of its own ------------------------------
 

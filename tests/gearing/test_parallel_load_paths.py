@@ -25,13 +25,12 @@ from tol3d import Overrides, Run, load_scene, run_scene
 from tol3d.cli import main
 from tol3d.errors import SceneError
 from tol3d.gearing.engines.gaps import exact_engine
-from tol3d.gearing.meshing.backlash import measure_backlash
-from tol3d.gearing.meshing.seats import seated
+from tol3d.gearing.meshing.seats import measure_backlash, seated
 from tol3d.gearing.model import Backlash, Model, model_from_scene
 from tol3d.gearing.play.play import seat_key
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import analytic_backlash
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials
 
 ARCMIN = 10800 / np.pi  # in a radian
 SIN, COS = math.sin(split.ALPHA), math.cos(split.ALPHA)

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from oracles import poses
 from scipy.spatial.transform import Rotation
 
-from tol3d.distributions import Uniform
 from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.model import AxisOffset, AxisTilt, Contributor, Effect, Model, Planar, Scalar, TurningOffset
 from tol3d.numerics import frames
+from tol3d.statistics.distributions import Uniform
 
 POSE_BOUND = 1e-12  # relative to 1 in rotations; in mm a thousand times the spacing of doubles at 172 mm
 LAW = Uniform(-1.0, 1.0)  # deviations are given below, none is drawn

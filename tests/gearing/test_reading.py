@@ -18,16 +18,16 @@ from places import SCENES
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.apps.adjustment.compensation import compensation
 from tol3d.apps.adjustment.shim import ShimQuestion, shim_plan
+from tol3d.cad.solids import measuring_strips
 from tol3d.errors import SceneError
 from tol3d.gearing.engines import OK, STATUS_TEXT
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model import Backlash, Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT, SpurPair, one_tooth_acts, one_tooth_share
-from tol3d.gears.one_tooth import Owner
-from tol3d.solids import measuring_strips
-from tol3d.study.blocks import contacts_of
-from tol3d.system.trials import Trials
+from tol3d.gears.pair import Owner
+from tol3d.study.results.task import contacts_of
+from tol3d.study.system.trials import Trials
 from tol3d.units import ARCMIN
 
 Teeth = Literal["all", "driver", "driven"]

@@ -12,7 +12,6 @@ from oracles.far_builds import PAIRS, Acting, contributors, far_block, far_model
 from scipy.spatial.transform import Rotation
 from thinned import thinned
 
-from tol3d.distributions import Constant
 from tol3d.gearing.builds.build import build
 from tol3d.gearing.builds.rates import build_rates, left_jacobian
 from tol3d.gearing.engines.exact import ExactEngine
@@ -33,11 +32,11 @@ from tol3d.gearing.model import (
 from tol3d.gearing.slopes.coefficients import mean_slopes
 from tol3d.gearing.slopes.sensitivity import peak_weights, sensitivities, taken_rates
 from tol3d.gears import LEFT, RIGHT
-from tol3d.gears.flank import Flank
-from tol3d.system.positions import Take
-from tol3d.system.stated import stated
-from tol3d.system.taken import taken
-from tol3d.system.trials import Trials
+from tol3d.gears.toothed_gear import Flank
+from tol3d.statistics.distributions import Constant
+from tol3d.study.system.positions import Take
+from tol3d.study.system.taken import taken
+from tol3d.study.system.trials import Trials, stated
 
 Over = Literal["random", "at", "turn", "long_period", "swing"]
 

@@ -15,7 +15,7 @@ from tol3d.gearing.model import Reading
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gearing.system import strips_of
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials
 
 Array = NDArray[np.float64]
 

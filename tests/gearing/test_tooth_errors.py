@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from tol3d import load_scene
 from tol3d.gearing.system import GearSystem, gear_system
-from tol3d.system.taken import taken
-from tol3d.system.trials import Trials
+from tol3d.study.system.taken import taken
+from tol3d.study.system.trials import Trials
 
 Array = NDArray[np.float64]
 

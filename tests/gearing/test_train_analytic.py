@@ -23,9 +23,9 @@ from tol3d.gearing.play.play import breakdowns_of
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import closed_form, stack_of
 from tol3d.gearing.summary.train_sections import train_sections
-from tol3d.study.breakdowns import merged_terms, pooled_terms
-from tol3d.system.closed_form import ClosedForm
-from tol3d.system.trials import Trials
+from tol3d.study.system.closed_form import ClosedForm
+from tol3d.study.system.trials import Trials
+from tol3d.study.tallies.tally import merged_terms, pooled_terms
 
 TABLE = (SCENES / "three_stage_train.yaml").read_text(encoding="utf-8")
 MANY = 100_000

@@ -30,10 +30,9 @@ from tol3d.gearing.model import Backlash, Kind, Measure, Model, TransmissionErro
 from tol3d.gearing.model.mesh_measures import default_reading
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair
-from tol3d.gears.flank import Flank
-from tol3d.system.positions import Positions
-from tol3d.system.stated import mean_build, stated
-from tol3d.system.trials import Trials
+from tol3d.gears.toothed_gear import Flank
+from tol3d.study.system.positions import Positions
+from tol3d.study.system.trials import Trials, mean_build, stated
 
 ARCSEC = 3600 * 180 / math.pi
 REFERENCE = EccentricPair(

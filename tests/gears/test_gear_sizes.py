@@ -22,7 +22,7 @@ from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model import GearPart, Mesh, Model, model_from_scene
 from tol3d.gears import LEFT, RIGHT, Flank, SpurGear, SpurPair
 from tol3d.simulate import run_scene, simulation_of
-from tol3d.study.witness import witness_summary, witness_warnings
+from tol3d.study.results.witness import witness_summary, witness_warnings
 
 MODULES = (0.05, 0.1, 0.3, 1.0, 2.5, 10.0, 20.0)
 ALPHA = np.radians(20.0)

@@ -6,8 +6,8 @@ import numpy as np
 from linkage.linked_bodies import Array
 from oracles.spherical_drive import HALF, RADIUS, ROD
 
-from tol3d.linkage.kinematics import Kinematics
-from tol3d.linkage.structure import KINDS, Joint, Output, structured
+from tol3d.assembly.linkage.kinematics import Kinematics
+from tol3d.assembly.linkage.structure import KINDS, Joint, Output, structured
 
 
 def at(x: float, y: float, z: float) -> Array:

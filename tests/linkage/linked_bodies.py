@@ -12,8 +12,8 @@ from oracles.closed_loops import Loops, Pair, Poses, closed, displaced, facing, 
 from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.model.statuses import OK
-from tol3d.system.method import Answers
-from tol3d.system.stated import component_count, component_slices, stated
+from tol3d.study.system.method import Answers
+from tol3d.study.system.trials import component_count, component_slices, stated
 
 Array = NDArray[np.float64]
 Trial = tuple[Mapping[str, Array], Mapping[str, float]]

@@ -16,15 +16,15 @@ from oracles.spherical_drive import HALF, RADIUS, ROD, travels
 from scipy.spatial.transform import Rotation
 
 from tol3d import Overrides, run_scene
+from tol3d.assembly.linkage import loop
+from tol3d.assembly.linkage.closing import loops_closed
+from tol3d.assembly.linkage.loop import ClosedLoop
 from tol3d.assembly.model.statuses import DOES_NOT_CLOSE, OK, OTHER_BRANCH
 from tol3d.assembly.torsors.world import World
-from tol3d.linkage import loop
-from tol3d.linkage.closing import loops_closed
-from tol3d.linkage.loop import ClosedLoop
 from tol3d.simulate import load, simulation_of
-from tol3d.study.blocks import block_trials
-from tol3d.study.draws import drawn
-from tol3d.system.trials import Trials
+from tol3d.study.results.task import block_trials
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.draws import drawn
 
 TRIALS = 4000
 LENGTHS = 13
@@ -221,7 +221,7 @@ def test_a_root_on_the_other_side_of_a_singular_pose_is_another_branch(sample: S
         loops_closed(*arguments)
 
     measure = next(own for own in sample.made.system.measures if own.name == "error middle")
-    with patch("tol3d.linkage.loop.loops_closed", turned):
+    with patch("tol3d.assembly.linkage.loop.loops_closed", turned):
         method = sample.made.system.method("exact", None)
         answers = method.answers(sample.trials.part(0, 5), [measure])
     assert calls

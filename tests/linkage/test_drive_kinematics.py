@@ -7,7 +7,7 @@ from linkage.linked_bodies import Array
 from oracles.spherical_drive import MEANT, MISPRINT, TABLE, rates, travels
 from scipy.spatial.transform import Rotation
 
-from tol3d.linkage.kinematics import Kinematics, Position, UnreachedError
+from tol3d.assembly.linkage.kinematics import Kinematics, Position, UnreachedError
 
 CM = 10.0
 

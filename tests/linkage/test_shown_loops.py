@@ -10,13 +10,13 @@ from linkage.drive_scene import drive_text, error
 from oracles.spherical_drive import travels
 
 from tol3d import Overrides, SceneError, run_scene
+from tol3d.assembly.linkage.loop import ClosedLoop
+from tol3d.assembly.linkage.workspace import workspace_of
 from tol3d.assembly.system import AssemblySystem
-from tol3d.linkage.loop import ClosedLoop
-from tol3d.linkage.workspace import workspace_of
 from tol3d.report.motion import motion_of
 from tol3d.report.presenter import Mapped, presenter_at
 from tol3d.simulate import load, simulation_of
-from tol3d.study.simulation import Simulation
+from tol3d.study.trials.simulation import Simulation
 
 MEASURES = error("error", "after: drive, at: middle") + error("worst", "after: drive, over: sweep, take: max")
 

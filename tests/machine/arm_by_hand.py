@@ -9,10 +9,9 @@ import numpy as np
 from machine.housed import Array
 
 from tol3d import Overrides, load_scene
-from tol3d.machine.system import MachineSystem
-from tol3d.study.overrides import simulation_of
-from tol3d.system.stated import component_slices
-from tol3d.system.trials import Trials
+from tol3d.gearing.machine.system import MachineSystem
+from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.trials.overrides import simulation_of
 
 STAGE = """
   pinion {k}: {{kind: spur_gear, teeth: 19, module: 1 mm, face_width: 10 mm}}

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d import Overrides, load_scene
-from tol3d.machine.system import MachineSystem
-from tol3d.study.overrides import simulation_of
-from tol3d.system.system import System
-from tol3d.system.trials import Trials
+from tol3d.gearing.machine.system import MachineSystem
+from tol3d.study.system.system import System
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.overrides import simulation_of
 
 Array = NDArray[np.float64]
 

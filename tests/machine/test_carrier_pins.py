@@ -12,13 +12,12 @@ from machine.housed import gearbox_of, system_of, values
 from numpy.typing import NDArray
 
 from tol3d import SceneError
-from tol3d.machine.centrals import displacement_name
-from tol3d.machine.nominal import Bore, HousedShaft
-from tol3d.machine.pins import Pins
-from tol3d.study.columns import columns_of
-from tol3d.system.method import ANALYTIC_METHOD
-from tol3d.system.regressors import regressor_count
-from tol3d.system.trials import Trials
+from tol3d.gearing.machine.nominal import Bore, HousedShaft
+from tol3d.gearing.machine.pins import Pins, displacement_name
+from tol3d.study.system.method import ANALYTIC_METHOD
+from tol3d.study.system.regressors import regressor_count
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.columns import columns_of
 
 Array = NDArray[np.float64]
 

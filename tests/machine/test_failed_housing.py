@@ -8,7 +8,7 @@ from machine.housed import FOUR_BORES, gearbox_of, housed_scene
 from machine.test_shared_bores import LOCATED, POINTS, TABLE
 
 from tol3d import Overrides, open_run, replay, run_scene
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials
 
 HEIGHTS = "distribution: {kind: uniform, lower: -130 mm, upper: 130 mm}"
 """Heights of one of two side locators 120 mm apart: beyond 120 mm no turn reaches it, in 10 of 130 trials."""

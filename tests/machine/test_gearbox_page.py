@@ -8,8 +8,7 @@ from places import ROOT, SCENES
 from ruamel.yaml import YAML
 
 from tol3d import open_run, run_scene
-from tol3d.machine.grammar.carrier_pins import CarrierPinsSpec
-from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
+from tol3d.gearing.machine.grammar.bores import CarrierPinsSpec, ShaftInBoresSpec
 
 PAGE = (ROOT / "docs" / "gearboxes.md").read_text("utf-8")
 

@@ -25,15 +25,14 @@ from machine.housed import Array
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.apps.adjustment.compensation import CompensationQuestion, compensation
-from tol3d.machine import chain
-from tol3d.machine.chain import Chain
-from tol3d.machine.closed_form import with_joints
-from tol3d.machine.system import MachineSystem
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
-from tol3d.system.closed_form import ClosedForm, Share
-from tol3d.system.stated import component_slices
-from tol3d.system.trials import Trials
+from tol3d.gearing.machine import chain
+from tol3d.gearing.machine.chain import Chain
+from tol3d.gearing.machine.closed_form import with_joints
+from tol3d.gearing.machine.system import MachineSystem
+from tol3d.study.system.closed_form import ClosedForm, Share
+from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 WORST = """
   worst: {kind: worst_position_error, of: link 3.tool, from: base}

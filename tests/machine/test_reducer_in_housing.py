@@ -10,10 +10,10 @@ from oracles.drawn_columns import DrawnColumns
 from oracles.whole_reducer import Numbers, WholeReducer
 
 from tol3d import SceneError
-from tol3d.study.columns import columns_of
-from tol3d.system.method import ANALYTIC_METHOD
-from tol3d.system.regressors import regressor_count
-from tol3d.system.trials import Trials
+from tol3d.study.system.method import ANALYTIC_METHOD
+from tol3d.study.system.regressors import regressor_count
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.columns import columns_of
 
 Array = NDArray[np.float64]
 

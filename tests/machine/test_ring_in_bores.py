@@ -9,7 +9,7 @@ from places import SCENES
 
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.errors import SceneError
-from tol3d.study.overrides import simulation_of
+from tol3d.study.trials.overrides import simulation_of
 
 APART = 51.9  # mm; 18 teeth in 70 of module 2
 MOVES = [

@@ -9,14 +9,13 @@ from machine.housed import Array
 from places import SCENES
 
 from tol3d import Overrides, load_scene
-from tol3d.cycloid.system import RVSystem
-from tol3d.machine.system import MachineSystem
-from tol3d.planetary.system import PlanetarySystem
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
-from tol3d.study.simulation import Simulation
-from tol3d.system.stated import component_slices
-from tol3d.system.trials import Trials
+from tol3d.gearing.cycloid.system import RVSystem
+from tol3d.gearing.machine.system import MachineSystem
+from tol3d.gearing.planetary.system import PlanetarySystem
+from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
+from tol3d.study.trials.simulation import Simulation
 
 DH = ((150, -90, 450), (700, 0, 0), (100, -90, 0), (0, 90, 700), (0, -90, 0), (0, 0, 100))
 """a [mm], alpha [deg], d [mm]; as its head says."""

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from oracles.whole_set import WholeSet
 
 from tol3d import SceneError, check_scene
-from tol3d.machine.system import MachineSystem
-from tol3d.study.columns import columns_of
-from tol3d.system.method import ANALYTIC_METHOD
-from tol3d.system.regressors import regressor_count
-from tol3d.system.trials import Trials
+from tol3d.gearing.machine.system import MachineSystem
+from tol3d.study.system.method import ANALYTIC_METHOD
+from tol3d.study.system.regressors import regressor_count
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.columns import columns_of
 
 Array = NDArray[np.float64]
 

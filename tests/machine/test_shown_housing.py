@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from machine.housed import FOUR_BORES, housed_scene
 
-from tol3d.machine.presenting import PRESENTER
+from tol3d.gearing.machine.presenting import PRESENTER
 from tol3d.report.body import Body
 from tol3d.simulate import Overrides, run_scene
 

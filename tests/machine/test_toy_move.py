@@ -17,14 +17,14 @@ from tol3d.assembly.model import Acts, Move
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
 from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.poses import Pose
-from tol3d.distributions import StatedDistribution
 from tol3d.kinds import all_kinds
 from tol3d.scene import Grammar, Scene
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
-from tol3d.system.draw import Scalar
-from tol3d.system.mechanism import Mechanism
-from tol3d.system.plain import PlainContributor
+from tol3d.statistics.distributions import StatedDistribution
+from tol3d.study.system.draw import Scalar
+from tol3d.study.system.mechanism import Mechanism
+from tol3d.study.system.plain import PlainContributor
 
 RUNS_OUT = 0.04
 """mm; the screw is no longer than that."""

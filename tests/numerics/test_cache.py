@@ -19,13 +19,13 @@ from filelock import FileLock, Timeout
 from fixtures import Command
 from places import SPUR_PAIR
 
+from tol3d.cad.solids import cache as solids_cache
 from tol3d.gears import SpurGear
 from tol3d.numerics import compiled
 from tol3d.numerics.cache_folder import CacheError, cache_folder, read_entry, sole_maker, write_entry
 from tol3d.numerics.compiled import Kernel
-from tol3d.samplers.monte_carlo import uniforms
-from tol3d.samplers.quick_uniforms import quick_uniforms
-from tol3d.solids import cache as solids_cache
+from tol3d.statistics.samplers.monte_carlo import uniforms
+from tol3d.statistics.samplers.quick_uniforms import quick_uniforms
 
 posix = pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners and modes are POSIX's")
 
@@ -145,7 +145,7 @@ DAMAGES: dict[str, Damage] = {
 @pytest.mark.slow
 @pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES.keys())
 def test_a_damaged_kernel_is_compiled_anew(folder: Path, damage: Damage) -> None:
-    from tol3d.samplers import quick_uniforms as module
+    from tol3d.statistics.samplers import quick_uniforms as module
 
     expected = drawn(fresh(module._draw))
     files = [path for path in folder.rglob("*") if path.is_file()]
@@ -170,7 +170,7 @@ def archive(**files: bytes) -> bytes:
 
 
 def test_an_entry_that_is_whole_but_no_kernel_is_compiled_anew(folder: Path) -> None:
-    from tol3d.samplers import quick_uniforms as module
+    from tol3d.statistics.samplers import quick_uniforms as module
 
     expected = drawn(fresh(module._draw))
     name = module._draw.name
@@ -317,7 +317,7 @@ def test_a_maker_s_own_error_gives_the_lock_back(folder: Path) -> None:
 def test_a_kernel_that_another_process_compiled_meanwhile_is_loaded(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tol3d.samplers import quick_uniforms as module
+    from tol3d.statistics.samplers import quick_uniforms as module
 
     expected = drawn(fresh(module._draw))
     name = module._draw.name
@@ -339,7 +339,7 @@ def test_a_kernel_that_another_process_compiled_meanwhile_is_loaded(
 
 COMPILERS = """
 import sys, pathlib, time
-from tol3d.samplers import quick_uniforms as module
+from tol3d.statistics.samplers import quick_uniforms as module
 mine, *others = (pathlib.Path(name) for name in sys.argv[1:])
 mine.touch()
 while not all(other.exists() for other in others):
@@ -359,7 +359,7 @@ def test_processes_that_want_a_kernel_at_once_compile_it_once(folder: Path, tmp_
 
 
 def test_a_folder_that_cannot_be_written_leaves_kernels_to_this_process(folder: Path) -> None:
-    from tol3d.samplers import quick_uniforms as module
+    from tol3d.statistics.samplers import quick_uniforms as module
 
     folder.write_text("a file where the folder should be")
     assert np.array_equal(drawn(fresh(module._draw)), drawn(module._draw))
@@ -379,7 +379,7 @@ def test_numba_keeps_nothing_of_its_own(folder: Path, tmp_path: Path, monkeypatc
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()
     assert len(quick_uniforms(1, "a", "", 0, 3)) == 3
-    from tol3d.samplers import quick_uniforms as module
+    from tol3d.statistics.samplers import quick_uniforms as module
 
     drawn(fresh(module._draw))
     assert list((tmp_path / "temporary").iterdir()) == []

@@ -13,8 +13,8 @@ from places import SCENES
 from tol3d.numerics.compiled import Kernel
 from tol3d.report.check import check_report
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.draws import drawn
-from tol3d.study.simulation import Simulation
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.simulation import Simulation
 
 CEILINGS = {"hole_and_slot": (1, 24), "cover_on_base": (1, 7), "door": (1, 7), "bolted_cover": (1, 7)}
 

@@ -18,11 +18,11 @@ from places import SPUR_PAIR
 from tol3d.errors import RunError
 from tol3d.gearing.model import Model
 from tol3d.numerics.processor import processor, unlike
-from tol3d.runs.run import open_run
 from tol3d.simulate import Execution, Overrides, replay, run_scene
-from tol3d.study.replaying import ElsewhereWarning
-from tol3d.study.task import Task
-from tol3d.study.versions import installed_versions, refuse_other_versions
+from tol3d.study.results.replaying import ElsewhereWarning
+from tol3d.study.results.task import Task
+from tol3d.study.results.versions import installed_versions, refuse_other_versions
+from tol3d.study.runs.run import open_run
 
 ARITHMETIC = re.compile(r"s?sse|avx|fma|xop|f16c|amx")  # features of x86 that floating-point instructions depend on
 STUDY = Overrides(trials=50, engine="analytic", witness=0)

@@ -13,12 +13,12 @@ import pytest
 from places import ROOT, SCENES
 
 from tol3d.gearing.engines.exact import kernels
-from tol3d.gearing.engines.exact.sums import write_builds
+from tol3d.gearing.engines.exact.deviation_sums import write_builds
 from tol3d.numerics import compiled, sources
 from tol3d.numerics.compiled import Kernel
 from tol3d.numerics.sources import sources_of
-from tol3d.samplers import quick_uniforms
-from tol3d.statistics import quick_products
+from tol3d.statistics.estimates import quick_products
+from tol3d.statistics.samplers import quick_uniforms
 
 KERNELS = {
     "spur read": kernels.spur_read,
@@ -116,14 +116,14 @@ def test_a_change_of_any_source_of_a_kernel_is_another_kernel(kernel: Kernel, mo
         names.add(name_of(kernel))
     assert len(names) == len(mine) + 1
     if kernel._tuples:
-        assert "tol3d.gearing.engines.status" in mine  # whose codes are frozen into it
+        assert "tol3d.gearing.engines.gaps" in mine  # whose codes are frozen into it
 
 
 @each_kernel
 def test_what_no_kernel_is_made_of_leaves_it_as_it_is(kernel: Kernel, monkeypatch: pytest.MonkeyPatch) -> None:
     before = name_of(kernel)
     real = sources.source
-    others = ("tol3d.report", "tol3d.cli", "tol3d.scene", "tol3d.gearing.model", "tol3d.solids", "tol3d.simulate")
+    others = ("tol3d.report", "tol3d.cli", "tol3d.scene", "tol3d.gearing.model", "tol3d.cad.solids", "tol3d.simulate")
     monkeypatch.setattr(sources, "source", lambda name: real(name) + ("# changed\n" if name.startswith(others) else ""))
     assert name_of(kernel) == before
 
@@ -135,7 +135,7 @@ def test_kernels_have_names_of_their_own() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("setting", ["NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", "NUMBA_OPT"])
 def test_another_target_is_another_kernel(setting: str) -> None:
-    code = "from tol3d.samplers.quick_uniforms import _draw; print(_draw.name)"
+    code = "from tol3d.statistics.samplers.quick_uniforms import _draw; print(_draw.name)"
     value = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "+bmi2", "NUMBA_OPT": "2"}[setting]
     names = [
         subprocess.run([sys.executable, "-c", code], env=os.environ | own, capture_output=True, text=True, check=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.numerics.trial_arrays import TrialArrays
+from tol3d.numerics.arrays import TrialArrays
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,6 @@ from functools import cache
 
 import numpy as np
 
-from tol3d.distributions import Distribution, Uniform
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.gearing.model import (
@@ -25,8 +24,9 @@ from tol3d.gearing.model import (
 )
 from tol3d.gearing.model.model import Housing
 from tol3d.gears import BevelGear, BevelPair, SpurGear, SpurPair, pitch_angles
-from tol3d.gears.flank import Flank
-from tol3d.system.trials import Trials
+from tol3d.gears.toothed_gear import Flank
+from tol3d.statistics.distributions import Distribution, Uniform
+from tol3d.study.system.trials import Trials
 
 ALPHA = math.radians(20.0)
 LAW = Uniform(-1.0, 1.0)  # deviations are stated, none is drawn

@@ -2,7 +2,7 @@
 
 import math
 
-from tol3d.planetary import CentralMesh, ToothSet
+from tol3d.gearing.planetary import CentralMesh, ToothSet
 
 PHASE_XTOL = 1e-9  # pitches; doubles of angles of up to 20 turns leave 1e-13
 

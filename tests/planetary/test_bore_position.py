@@ -9,13 +9,13 @@ import pytest
 from places import SCENES
 
 from tol3d import Overrides, SceneError, load_scene
-from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.system import PlanetarySystem
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
-from tol3d.system.method import ANALYTIC_METHOD
-from tol3d.system.trials import Trials
+from tol3d.gearing.planetary.from_scene import planetary_system
+from tol3d.gearing.planetary.system import PlanetarySystem
+from tol3d.study.system.method import ANALYTIC_METHOD
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 TEXT = (SCENES / "reducer_3k.yaml").read_text("utf-8")
 TEXT = TEXT[: TEXT.index("published:")]

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from planetary_sets import random_deviations, reducer_3k
 from scipy.optimize import linprog
 
+from tol3d.gearing.planetary.exact.contact import Contact
+from tol3d.gearing.planetary.model.deviated import Deviated
+from tol3d.gearing.planetary.model.planetary_set import PlanetarySet, Spring
+from tol3d.gearing.planetary.model.set_mesh import SetMesh
 from tol3d.gears import LEFT, RIGHT, InternalGear, InternalPair, SpurGear, SpurPair
-from tol3d.planetary.exact.contact import Contact
-from tol3d.planetary.model.deviated import Deviated
-from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
-from tol3d.planetary.model.set_mesh import SetMesh
 
 Array = NDArray[np.float64]
 

@@ -26,13 +26,13 @@ from planetary_sets import (
 from scipy.optimize import linprog
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.planetary.exact.contact import Contact
-from tol3d.planetary.first_order.stack_up import StackUp
-from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.model.deviated import Deviated
-from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
+from tol3d.gearing.planetary.exact.contact import Contact
+from tol3d.gearing.planetary.first_order.stack_up import StackUp
+from tol3d.gearing.planetary.from_scene import planetary_system
+from tol3d.gearing.planetary.model.deviated import Deviated
+from tol3d.gearing.planetary.model.planetary_set import PlanetarySet, Spring
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 Array = NDArray[np.float64]
 

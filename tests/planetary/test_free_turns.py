@@ -18,15 +18,15 @@ from planetary_sets import (
     set_of,
 )
 
+from tol3d.gearing.planetary.exact.contact import Contact
+from tol3d.gearing.planetary.first_order.stack_up import StackUp
+from tol3d.gearing.planetary.model.deviated import Deviated
+from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
+from tol3d.gearing.planetary.model.set_mesh import SetGear, SetMesh
+from tol3d.gearing.reducers.deviations import Acts
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_pair import InternalPair
-from tol3d.planetary.exact.contact import Contact
-from tol3d.planetary.first_order.stack_up import StackUp
-from tol3d.planetary.model.deviated import Deviated
-from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.planetary.model.set_mesh import SetGear, SetMesh
-from tol3d.reducers.deviations import Acts
 
 NONE = np.zeros(1)
 

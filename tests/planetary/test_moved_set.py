@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from planetary_sets import ARCMIN, CLEARANCE, PAIRS, flexible, random_deviations, reducer_3k, thinned
 
 from tol3d.errors import InputError
+from tol3d.gearing.planetary.exact.contact import Contact
+from tol3d.gearing.planetary.exact.flank_gaps import flank_gaps
+from tol3d.gearing.planetary.exact.shown import MovedSet, ShownSet, opened, shown_set, swung, turned
+from tol3d.gearing.planetary.model.deviated import Deviated
+from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
+from tol3d.gearing.planetary.presenting.shown_gears import PlanetaryDisplay
 from tol3d.gears import LEFT, RIGHT, InternalGear, SpurGear
-from tol3d.planetary.exact.contact import Contact
-from tol3d.planetary.exact.flank_gaps import flank_gaps
-from tol3d.planetary.exact.shown import MovedSet, ShownSet, opened, shown_set, swung, turned
-from tol3d.planetary.model.deviated import Deviated
-from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.planetary.presenting.shown_gears import PlanetaryDisplay
 
 Array = NDArray[np.float64]
 

@@ -18,18 +18,18 @@ from planetary_sets import (
 )
 
 from tol3d import Overrides, SceneError, load_scene
-from tol3d.planetary.exact.contact import Contact
-from tol3d.planetary.exact.contact_kernel import LOOSE
-from tol3d.planetary.first_order.stack_up import StackUp
-from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.model.deviated import Deviated
-from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
-from tol3d.system.plain import PlainMeasure
-from tol3d.system.positions import Positions
-from tol3d.system.spectrum import Spectrum
-from tol3d.system.taken import taken
+from tol3d.gearing.planetary.exact.contact import Contact
+from tol3d.gearing.planetary.exact.contact_kernel import LOOSE
+from tol3d.gearing.planetary.first_order.stack_up import StackUp
+from tol3d.gearing.planetary.from_scene import planetary_system
+from tol3d.gearing.planetary.model.deviated import Deviated
+from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
+from tol3d.study.system.plain import PlainMeasure
+from tol3d.study.system.pooled import Spectrum
+from tol3d.study.system.positions import Positions
+from tol3d.study.system.taken import taken
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 TURNS = np.array([0.0, 0.013, 0.31, 0.32, 0.8])
 EITHER = ((0, "lower"), (1, "upper"))
@@ -74,7 +74,7 @@ def test_planets_that_are_left_out_would_not_have_stopped_a_shaft(
     deviated.central_thickness[...] -= 0.5
     found = []
     for loose in (LOOSE, 1e12):  # mm a mm: none is left out then
-        monkeypatch.setattr("tol3d.planetary.exact.contact.LOOSE", loose)
+        monkeypatch.setattr("tol3d.gearing.planetary.exact.contact.LOOSE", loose)
         found.append(Contact(own).followed(deviated, np.arange(40) / 40, own.output, own.input, 0).ends)
     np.testing.assert_allclose(found[0], found[1], rtol=0, atol=2e-11)
     assert np.ptp(found[0]) > 1e-3

@@ -10,14 +10,14 @@ from places import SCENES
 from rich.console import Console
 
 from tol3d import Overrides, SceneError, load_scene, replay, run_scene
+from tol3d.gearing.planetary.first_order.stack_up import StackUp
+from tol3d.gearing.planetary.from_scene import planetary_system
+from tol3d.gearing.planetary.model.set_mesh import SetGear
+from tol3d.gearing.planetary.system import PlanetarySystem
 from tol3d.gears import InternalGear
-from tol3d.planetary.first_order.stack_up import StackUp
-from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.model.set_mesh import SetGear
-from tol3d.planetary.system import PlanetarySystem
 from tol3d.report.check import check_report
-from tol3d.study.overrides import simulation_of
-from tol3d.system.stated import mean_build
+from tol3d.study.system.trials import mean_build
+from tol3d.study.trials.overrides import simulation_of
 
 TEXT = (SCENES / "reducer_3k.yaml").read_text("utf-8")
 SHIFTED = ("teeth: 25, module: 1 mm,", "teeth: 25, module: 1 mm, profile_shift: 0.2,")

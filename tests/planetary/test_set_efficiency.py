@@ -12,8 +12,8 @@ from rich.console import Console
 from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.apps.design.shifted_set import ShiftedSet
 from tol3d.apps.design.working_mesh import BasicRack
-from tol3d.planetary.model.tooth_set import wolfrom
-from tol3d.planetary.sections import formula_efficiency, mesh_efficiencies, set_efficiency
+from tol3d.gearing.planetary.model.tooth_set import wolfrom
+from tol3d.gearing.planetary.sections import formula_efficiency, mesh_efficiencies, set_efficiency
 from tol3d.report import run_report
 
 FRICTION = 0.08

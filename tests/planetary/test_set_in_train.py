@@ -16,11 +16,11 @@ from places import SCENES
 from planetary_sets import ARCMIN, free_by_highs, pitch_rows, reducer_3k
 
 from tol3d import Overrides, Run, SceneError, load_scene, run_scene
+from tol3d.gearing.planetary.model.deviated import Deviated
 from tol3d.gearing.presenting import PRESENTER
 from tol3d.gearing.system import gear_system
-from tol3d.planetary.model.deviated import Deviated
 from tol3d.report.motion import motion_of
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, Array]

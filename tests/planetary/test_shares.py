@@ -8,16 +8,15 @@ from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d import Overrides, load_scene
-from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.system import PlanetarySystem
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
-from tol3d.system.contributor import Contributor
-from tol3d.system.method import ANALYTIC_METHOD
-from tol3d.system.regressors import regressor_count
-from tol3d.system.stated import component_slices
-from tol3d.system.trials import Trials
+from tol3d.gearing.planetary.from_scene import planetary_system
+from tol3d.gearing.planetary.system import PlanetarySystem
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.method import ANALYTIC_METHOD
+from tol3d.study.system.regressors import regressor_count
+from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 Array = NDArray[np.float64]
 

@@ -10,13 +10,13 @@ from places import SCENES
 
 from tol3d import Overrides, run_scene
 from tol3d.errors import InputError
+from tol3d.gearing.planetary.exact.shown import ShownSet
+from tol3d.gearing.planetary.presenting import PRESENTER
+from tol3d.gearing.planetary.presenting.shown_gears import PlanetaryDisplay
 from tol3d.gearing.shown.placed import PlacedGear
 from tol3d.gears import LEFT, RIGHT, InternalGear, SpurGear
-from tol3d.planetary.exact.shown import ShownSet
-from tol3d.planetary.presenting import PRESENTER
-from tol3d.planetary.presenting.shown_gears import PlanetaryDisplay
 from tol3d.report.motion import motion_of
-from tol3d.runs.run import Run
+from tol3d.study.runs.run import Run
 
 Array = NDArray[np.float64]
 

@@ -25,12 +25,12 @@ from planetary_sets import (
 from scipy.optimize import linprog
 
 from tol3d.errors import InputError
-from tol3d.planetary.first_order.stack_up import StackUp
-from tol3d.planetary.hysteresis import hysteresis
-from tol3d.planetary.hysteresis_picture import draw_curve
-from tol3d.planetary.model.deviated import Deviated
-from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.planetary.spring_curve import LeafSpring, breakaway, turns_under
+from tol3d.gearing.planetary.first_order.stack_up import StackUp
+from tol3d.gearing.planetary.hysteresis import hysteresis
+from tol3d.gearing.planetary.hysteresis_picture import draw_curve
+from tol3d.gearing.planetary.model.deviated import Deviated
+from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
+from tol3d.gearing.planetary.spring_curve import LeafSpring, breakaway, turns_under
 
 Array = NDArray[np.float64]
 

@@ -8,12 +8,12 @@ from places import SCENES
 from planetary_sets import ARCMIN, R_R2, R_S, flexible, thinned
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.spring_curve import displaced_ends
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.overrides import simulation_of
-from tol3d.system.method import ANALYTIC_METHOD
+from tol3d.gearing.planetary.from_scene import planetary_system
+from tol3d.gearing.planetary.spring_curve import displaced_ends
+from tol3d.study.system.method import ANALYTIC_METHOD
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.overrides import simulation_of
 
 FLEXIBLE = SCENES / "reducer_3k_flexible.yaml"
 TEXT = FLEXIBLE.read_text("utf-8")
@@ -92,7 +92,7 @@ def test_with_gaps_alike_it_is_the_dead_band_of_the_rigid_carrier(tmp_path: Path
 
 
 def test_the_picture_of_the_torque_curve_lies_beside_the_run(tmp_path: Path) -> None:
-    from tol3d.planetary.presenting import PRESENTER
+    from tol3d.gearing.planetary.presenting import PRESENTER
 
     run = run_scene(FLEXIBLE, overrides=Overrides(trials=8, engine="analytic"), out=tmp_path / "run")
     (draw,) = PRESENTER.pictures(run.found).values()

@@ -12,16 +12,16 @@ from places import SCENES
 from planetary_sets import flexible, random_deviations, reducer_3k
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.planetary.exact.contact import Contact
-from tol3d.planetary.exact.flank_gaps import flank_gaps
-from tol3d.planetary.exact.shown import shown_set
-from tol3d.planetary.first_order.levers import play_bound
-from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.model.deviated import Deviated
-from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.planetary.system import PlanetarySystem
-from tol3d.planetary.witness import StripContact, StripGaps
-from tol3d.solids import FlankStrips, measuring_strips
+from tol3d.cad.solids import FlankStrips, measuring_strips
+from tol3d.gearing.planetary.exact.contact import Contact
+from tol3d.gearing.planetary.exact.flank_gaps import flank_gaps
+from tol3d.gearing.planetary.exact.shown import shown_set
+from tol3d.gearing.planetary.first_order.stack_up import play_bound
+from tol3d.gearing.planetary.from_scene import planetary_system
+from tol3d.gearing.planetary.model.deviated import Deviated
+from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
+from tol3d.gearing.planetary.system import PlanetarySystem
+from tol3d.gearing.planetary.witness import StripContact, StripGaps
 
 Array = NDArray[np.float64]
 

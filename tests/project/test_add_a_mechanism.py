@@ -21,7 +21,7 @@ import tol3d
 from tol3d import import_path, kinds
 from tol3d.errors import InputError
 from tol3d.report import picture
-from tol3d.runs.run import Run
+from tol3d.study.runs.run import Run
 
 PAGE = (ROOT / "docs" / "add_a_mechanism.md").read_text("utf-8")
 PINS, NOMINAL, SIGMA, SCALE = 6, 20.0, 3.0, 2.0  # um, as the page's scene has them

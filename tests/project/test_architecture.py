@@ -17,10 +17,10 @@ APPLICATIONS = ("adjustment", "design", "drafting", "records")
 COMMANDS = tuple(f"tol3d/apps/{own}/commands.py" for own in APPLICATIONS)
 
 DOORS = {
-    "fcl": ("tol3d/solids/distance.py",),
-    "cadquery": ("tol3d/solids/", "parts/", "tol3d/step/step_cad.py"),
-    "OCP": ("tol3d/solids/", "parts/", "tol3d/step/worker.py"),
-    "trimesh": ("tol3d/solids/", "parts/", "tol3d/report/", "tol3d/notebook.py"),
+    "fcl": ("tol3d/cad/solids/distance.py",),
+    "cadquery": ("tol3d/cad/solids/", "parts/", "tol3d/cad/step/step_cad.py"),
+    "OCP": ("tol3d/cad/solids/", "parts/", "tol3d/cad/step/worker.py"),
+    "trimesh": ("tol3d/cad/solids/", "parts/", "tol3d/report/", "tol3d/notebook.py"),
     "pyvista": ("tol3d/report/", "tol3d/gearing/presenting/"),
     "vtk": ("tol3d/report/",),
     "vtkmodules": ("tol3d/report/",),
@@ -34,13 +34,13 @@ DOORS = {
     "PIL": ("tol3d/report/animation.py", "tol3d/report/html/view_3d.py"),
     "ruamel": ("tol3d/scene/",),
     "yaml": ("tol3d/scene/text.py", "tol3d/scene/splice.py"),
-    "joblib": ("tol3d/execution/pools.py",),
-    "dask": ("tol3d/execution/pools.py",),
-    "distributed": ("tol3d/execution/pools.py",),
-    "pyarrow": ("tol3d/runs/parquet.py", "tol3d/apps/records/csv_file.py"),
+    "joblib": ("tol3d/study/execution/pools.py",),
+    "dask": ("tol3d/study/execution/pools.py",),
+    "distributed": ("tol3d/study/execution/pools.py",),
+    "pyarrow": ("tol3d/study/runs/parquet.py", "tol3d/apps/records/csv_file.py"),
     "rich": ("tol3d/cli/", "tol3d/report/sheet.py", "tol3d/report/page.py"),
     "typer": ("tol3d/cli/", *COMMANDS),
-    "pandas": ("tol3d/runs/run.py", "tol3d/runs/frame.py"),
+    "pandas": ("tol3d/study/runs/run.py", "tol3d/study/runs/frame.py"),
 }
 """Which files may import each heavy library."""
 

@@ -84,7 +84,7 @@ def test_every_page_and_picture_is_reached_from_the_readme() -> None:
 
 
 def named_files(said: str) -> set[str]:
-    """Paths from the top of the tree, or from the package as its docstrings write them: `study/tally.py`."""
+    """Paths from the top of the tree, or from the package as its docstrings write them: `study/tallies/tally.py`."""
     tops, rooms = ("|".join(re.escape(name) for name in names) for names in (FOLDERS, ROOMS))
     path = rf"(?:{tops})/(?:[\w.-]+/)*(?:[\w.-]*\w)?|(?:{rooms})/(?:\w+/)*(?:\w+\.py)?"
     return set(re.findall(rf"(?<![\w/.<-])(?:{path})(?![\w<>*])", said))

@@ -79,14 +79,14 @@ from tol3d.errors import InputError
 from tol3d.gears import SpurGear, _HOMES
 def late():
     from tol3d.gearing.engines import OK
-    return named("tol3d.runs.writer:RunWriter")("tol3d.simulate:load")
+    return named("tol3d.study.runs.writer:RunWriter")("tol3d.simulate:load")
 """
     assert sorted(private_imports(source, "tol3d.apps.here")) == [
         "tol3d.apps.hereafter.something",
         "tol3d.gearing.engines.",
         "tol3d.gearing.engines.OK",
         "tol3d.gears._HOMES",
-        "tol3d.runs.writer.RunWriter",
+        "tol3d.study.runs.writer.RunWriter",
     ]
 
 

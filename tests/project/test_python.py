@@ -19,10 +19,10 @@ from places import ROOT
 
 import tol3d
 from tol3d.gearing.shown.placed import DISPLAY_DEFLECTION
-from tol3d.runs.frame import MissingPackageError
-from tol3d.runs.run import SUMMARY, Run
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import TemporaryRunWarning
+from tol3d.study.runs.frame import MissingPackageError
+from tol3d.study.runs.run import SUMMARY, Run
 
 FEW = tol3d.Overrides(trials=60, witness=0)
 

@@ -23,7 +23,7 @@ def texts() -> dict[str, str]:
 
 def family(root: str) -> frozenset[str]:
     """Names of a class and of all that derive from it, of assemblies, machines and linkages."""
-    rooms = ("tol3d/assembly/", "tol3d/machine/", "tol3d/linkage/")
+    rooms = ("tol3d/assembly/", "tol3d/gearing/machine/", "tol3d/assembly/linkage/")
     classes = [own for path, text in texts().items() if path.startswith(rooms) for own in CLASS.findall(text)]
     found = {root}
     while more := {name for name, bases in classes if found & set(re.findall(r"\w+", bases))} - found:

@@ -15,7 +15,7 @@ from scene_reference import Reference, UndescribedError, reference_pages
 
 from tol3d.kinds import all_kinds
 from tol3d.scene import Grammar, Vocabulary
-from tol3d.scene.part import Length, PartSpec
+from tol3d.scene.bases import Length, PartSpec
 
 DOCS = ROOT / "docs"
 WIDE = "article :is(p, li, h1, h2, h3, pre, .table-wrapper, .cell_output)"  # what the page must hold

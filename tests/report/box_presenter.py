@@ -10,14 +10,14 @@ import numpy as np
 import trimesh
 from matplotlib.figure import Figure
 
+from tol3d.cad.solids import PosedBody, ShaftBody
 from tol3d.errors import InputError
 from tol3d.report.body import Arrow, Body, Surface, World
 from tol3d.report.presenter import Draw, View, Which
-from tol3d.solids import PosedBody, ShaftBody
 
 if TYPE_CHECKING:
-    from tol3d.runs.run import Run
-    from tol3d.runs.summary.run import RunSummary
+    from tol3d.study.runs.run import Run
+    from tol3d.study.runs.summary.run import RunSummary
 
 SIDES = {"small": 10.0, "large": 20.0}  # mm
 COLOURS = {"small": "#7FB2D9", "large": "#F0C36D"}

@@ -16,7 +16,7 @@ from tol3d.report.animation import animate_run, encoded, pictures
 from tol3d.report.body import World
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around, motion_of
 from tol3d.report.presenter import Display
-from tol3d.runs.atomic_write import write_whole
+from tol3d.study.runs.atomic_write import write_whole
 
 FRONT, UP = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
 MARK = "#B0127B"

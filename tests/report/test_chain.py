@@ -25,11 +25,11 @@ from tol3d.gearing.presenting.shown_stage import shafts_along, stages_of, sums_o
 from tol3d.gearing.presenting.train_tables import train_report
 from tol3d.gearing.summary.types import TrainSummary
 from tol3d.report import picture
+from tol3d.report.canvas import wrapped
 from tol3d.report.chart import Axis
 from tol3d.report.chart_figure import charts_figure
 from tol3d.report.compare import Compared
 from tol3d.report.heading import heading, limits_text
-from tol3d.report.label import wrapped
 from tol3d.report.measure_charts import curve
 from tol3d.report.measure_table import curve_table
 from tol3d.report.number import difference_text

@@ -14,8 +14,8 @@ from tol3d.report.declared import declared_table, side_by_side
 from tol3d.report.html.blocks import table
 from tol3d.report.page import Row
 from tol3d.report.table_files import Grid
-from tol3d.runs.summary.shows import Computed, RowOf, Shows, shown
-from tol3d.runs.summary.values import Known, Label, Ppm, Section, made
+from tol3d.study.runs.summary.shows import Computed, RowOf, Shows, shown
+from tol3d.study.runs.summary.values import Known, Label, Ppm, Section, made
 
 
 class Slot(Section):

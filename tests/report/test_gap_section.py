@@ -11,8 +11,8 @@ from tol3d.gearing.shown.display import seated_build
 from tol3d.gearing.shown.placed import CONE_DEFLECTION, DISPLAY_DEFLECTION
 from tol3d.gears import BevelPair
 from tol3d.report.drawn_solids import poly_data
-from tol3d.runs.run import Run
 from tol3d.simulate import Overrides, run_scene
+from tol3d.study.runs.run import Run
 
 ABOUT = 0.5  # mm; about the gap, of the outlines that are held against each other
 SLOW_CONES = pytest.param("every_bevel_field", marks=pytest.mark.slow)

@@ -26,19 +26,19 @@ from tol3d.import_path import is_named
 from tol3d.notebook import write_report
 from tol3d.report.bars import Bars
 from tol3d.report.chart import Filled
+from tol3d.report.chart_figure import comparison_figure
 from tol3d.report.compare import comparison_report
-from tol3d.report.comparison_picture import comparison_figure
-from tol3d.report.convergence import running
 from tol3d.report.displayed_run import DisplayedRun
 from tol3d.report.html import view_3d
+from tol3d.report.html.blocks import escaped, tag
 from tol3d.report.html.document import report_html
-from tol3d.report.html.tags import escaped, tag
 from tol3d.report.measure_charts import histogram
 from tol3d.report.report_sections import report_sections
-from tol3d.runs.bare import MissingMechanismWarning
-from tol3d.runs.run import Run, open_run
+from tol3d.report.trial_charts import running
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import Execution, Overrides, simulation_again
+from tol3d.study.runs.bare import MissingMechanismWarning
+from tol3d.study.runs.run import Run, open_run
 
 PACKED = "H4sI"
 """First characters of base64 text packed by gzip."""

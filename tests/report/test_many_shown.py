@@ -20,7 +20,7 @@ from tol3d.report.heading import MOST_CONTRIBUTORS, MOST_MEASURES, WORST_FIRST
 from tol3d.report.page import Line, Page, Table, some
 from tol3d.report.table import Detail
 from tol3d.simulate import simulation_of
-from tol3d.study.summary import _named
+from tol3d.study.results.summary import _named
 
 TOLERANCES, MEASURES = 18, 24
 SQUARES = sum(k**2 for k in range(1, TOLERANCES + 1))

@@ -24,19 +24,17 @@ from tol3d.report import picture
 from tol3d.report.bars import bars_of
 from tol3d.report.canvas import OUTSIDE, new_figure, save_figure
 from tol3d.report.chart import Chart
-from tol3d.report.chart_figure import matrix_figure
-from tol3d.report.column import columns_of
-from tol3d.report.comparison_picture import comparison_figure
+from tol3d.report.chart_figure import comparison_figure, matrix_figure
+from tol3d.report.column import columns_of, is_bounded
 from tol3d.report.drawn_chart import draw_panel
-from tol3d.report.ends import is_bounded
+from tol3d.report.figures import histogram_figure, overview_figure
 from tol3d.report.heading import heading, legible
-from tol3d.report.histogram import histogram_figure, overview_figure
 from tol3d.report.histogram_process import _refused
 from tol3d.report.measure_charts import curve as curve_chart
 from tol3d.report.measure_charts import histogram
 from tol3d.report.picture import measure_files
 from tol3d.report.share_charts import pareto, run_matrix
-from tol3d.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.run import RunSummary
 
 LONGEST = 80  # characters; of a name in a scene
 READING = {"contact": "face", "gap": "section", "teeth": "driven"}

@@ -19,7 +19,7 @@ from tol3d.gearing.presenting import PRESENTER as GEARS
 from tol3d.report import export_run, part_meshes, picture, view_run
 from tol3d.report.body import World
 from tol3d.report.presenter import View, presenter_of
-from tol3d.runs.summary.kinds import SummaryKinds
+from tol3d.study.runs.summary.kinds import SummaryKinds
 
 BOXES = "report.box_presenter"
 CUBES = {"small": (GROWTH * SIDES["small"]) ** 3, "large": SIDES["large"] ** 3}  # mm^3

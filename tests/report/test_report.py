@@ -27,6 +27,7 @@ from scipy.stats import norm
 from tol3d import load_scene
 from tol3d.apps.adjustment.compensation import CompensationQuestion, compensation
 from tol3d.apps.adjustment.compensation_table import swing_table
+from tol3d.cad.solids import display_mesh
 from tol3d.errors import InputError
 from tol3d.gearing.shown.display import seated_build
 from tol3d.gearing.shown.placed import DISPLAY_DEFLECTION, OPEN_SHARE
@@ -43,18 +44,16 @@ from tol3d.report import (
 )
 from tol3d.report.bars import bars_of
 from tol3d.report.canvas import VERMILLION, new_figure
-from tol3d.report.chart_figure import charts_figure
+from tol3d.report.chart_figure import charts_figure, comparison_figure
 from tol3d.report.compare import difference_of, measures_of
-from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.drawn_chart import draw_panel
 from tol3d.report.export import Exported, file_words
 from tol3d.report.measure_charts import curve, histogram
 from tol3d.report.page import Heading, Row, Table
 from tol3d.report.share_charts import pareto
 from tol3d.report.table import Detail
-from tol3d.runs.run import Run
 from tol3d.simulate import Overrides, run_scene, simulation_again, simulation_of
-from tol3d.solids import display_mesh
+from tol3d.study.runs.run import Run
 
 SCENE = """
 scene: small pair, 5 $ a piece [cheap]
@@ -531,7 +530,7 @@ def test_a_run_loads_neither_cad_nor_meshes_nor_views(run: Run, tmp_path: Path) 
     program = (
         "import json, sys; from pathlib import Path; from tol3d.simulate import run_scene, Overrides, Watch\n"
         "from tol3d.report import draw_histogram, run_report\n"
-        "from tol3d.runs.summary.text import typed\n"
+        "from tol3d.study.runs.summary.text import typed\n"
         "found = lambda summary: typed(json.loads(json.dumps(summary)), ValueError)\n"
         f"run = run_scene({str(run.path.parent / 'small.yaml')!r}, out=sys.argv[1], overrides=Overrides(trials=2),\n"
         "    watch=Watch(finisher=lambda place, summary: draw_histogram(found(summary), place / 'h.png')))\n"
@@ -781,7 +780,7 @@ def test_perturbed_gear_is_the_mesh_turned_flank_by_flank(run: Run) -> None:
 def test_the_process_that_draws_pictures_loads_no_runs_and_no_models() -> None:
     code = "import sys, tol3d.report.histogram_process as _; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
-    heavy = {"pyarrow", "tol3d.runs.run", "tol3d.gearing.model", "scipy", "cadquery"}
+    heavy = {"pyarrow", "tol3d.study.runs.run", "tol3d.gearing.model", "scipy", "cadquery"}
     assert sorted(heavy.intersection(loaded)) == []
 
 

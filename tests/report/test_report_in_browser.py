@@ -12,8 +12,8 @@ from browser import Page, browser
 
 from tol3d import run_scene
 from tol3d.notebook import write_report
-from tol3d.runs.run import Run
 from tol3d.simulate import Overrides
+from tol3d.study.runs.run import Run
 
 READY = "document.querySelector('figure.view').dataset.ready === 'yes'"
 STAGE = ".stage"

@@ -11,13 +11,13 @@ import pytest
 from tol3d import Run, run_scene
 from tol3d.assembly.summary_types import AssemblyMeasureSummary
 from tol3d.report.check import check_report
-from tol3d.report.histogram import histogram_figure
+from tol3d.report.figures import histogram_figure
 from tol3d.report.sheet import as_text
 from tol3d.report.shown_unit import BUILDS, LENGTHS, shown_run
 from tol3d.report.table import Detail, run_report
-from tol3d.runs.summary.agreement import Witnessed
-from tol3d.runs.summary.values import Section
 from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.study.runs.summary.agreement import Witnessed
+from tol3d.study.runs.summary.values import Section
 
 MIDDLE, SIGMA = 40.22, 0.01  # mm
 SCENE = f"""

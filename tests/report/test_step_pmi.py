@@ -9,8 +9,8 @@ from fixtures import Command
 from nist import FILES, step_bytes, step_text
 from printing import printed
 
-from tol3d.report.step_pmi import pmi_report
-from tol3d.step import read_step_text
+from tol3d.cad.step import read_step_text
+from tol3d.report.step_tables import pmi_report
 
 
 def rows(model: str) -> list[list[str]]:

@@ -16,8 +16,8 @@ from tol3d.notebook import keep_report, write_report
 from tol3d.report.page import Heading, Row, Shown, Table
 from tol3d.report.table_files import Grid
 from tol3d.report.workbook import Sheet, sheet_names, workbook
-from tol3d.runs.run import open_run
 from tol3d.simulate import Overrides
+from tol3d.study.runs.run import open_run
 
 MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 FORMULAS = ("=1+1", "+1+1", "-1+cmd|'/c calc'!A0", "@SUM(A1)", "\t=1", "\r=1")

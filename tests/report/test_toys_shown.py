@@ -22,8 +22,8 @@ from tol3d import InputError, Run, check_scene, compare_runs, open_run, replay
 from tol3d.report import export_run, view_run
 from tol3d.report.page import Table
 from tol3d.report.spectrum_table import largest_orders, spectrum_blocks
-from tol3d.runs.summary.sample import SpectrumSample
-from tol3d.runs.summary.values import made
+from tol3d.study.runs.summary.sample import SpectrumSample
+from tol3d.study.runs.summary.values import made
 
 SPRING = TOYS / "parabola" / "spring.yaml"
 ALL = ("--pictures", "all")

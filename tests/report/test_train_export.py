@@ -13,6 +13,7 @@ from of_kind import known, of_kind
 from rendering import renders
 
 from tol3d import Run
+from tol3d.cad.solids.posed_gear import ShaftBody
 from tol3d.errors import InputError
 from tol3d.gearing.presenting.whole_trains import HOUSING_COLOUR, WholeTrain, whole_trains
 from tol3d.gearing.shown.display import seated_build
@@ -20,7 +21,6 @@ from tol3d.gearing.shown.placed import DISPLAY_DEFLECTION
 from tol3d.gears import SpurGear
 from tol3d.report import export_run, view_run
 from tol3d.simulate import run_scene
-from tol3d.solids.posed_gear import ShaftBody
 
 TRIAL = 2
 DEG = math.pi / 180

@@ -17,7 +17,7 @@ from tol3d.report.page import page
 from tol3d.report.sheet import as_text
 from tol3d.report.table import Detail, run_report
 from tol3d.report.verdict import accepted_text, short_verdict, verdict_table
-from tol3d.runs.summary.judged import ACCEPTED_PPM, AcceptedPpk, JudgedMeasure, all_ok
+from tol3d.study.runs.summary.judged import ACCEPTED_PPM, AcceptedPpk, JudgedMeasure, all_ok
 
 
 def lines_of(shown: RenderableType, width: int = 200) -> list[str]:

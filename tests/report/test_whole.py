@@ -9,10 +9,10 @@ import pyvista as pv
 import trimesh
 from rendering import renders
 
+from tol3d.cad.solids import PosedBody
 from tol3d.report.body import Body, World
 from tol3d.report.view import choose_window
 from tol3d.report.whole import Frame, _best_eye, _places, draw_whole
-from tol3d.solids import PosedBody
 
 SIZE = (1188, 1050)  # pixels, the larger part of the window
 

@@ -8,8 +8,8 @@ from of_kind import known
 from places import SCENES
 
 from tol3d import Overrides, RunError, Scene, SceneError, open_run, replay, run_scene
-from tol3d.runs.writer import RunWriter
 from tol3d.simulate import Execution, Watch
+from tol3d.study.runs.writer import RunWriter
 
 MEASURED = "n,e\n1,-30\n2,-25\n3,-21\n4,-35\n"
 SCENE = """

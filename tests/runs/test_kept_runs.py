@@ -7,11 +7,11 @@ import pytest
 from places import SPUR_PAIR
 
 from tol3d import Overrides, RunError, open_run, replay, run_scene
-from tol3d.execution.pools import Execution
-from tol3d.runs.block_files import BlockFiles, block_name
-from tol3d.runs.run import DamageWarning
 from tol3d.simulate import Watch
-from tol3d.study import blocks as block_module
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results import task as block_module
+from tol3d.study.runs.block_files import BlockFiles, block_name
+from tol3d.study.runs.run import DamageWarning
 
 BLOCK = 1000
 STUDY = Overrides(trials=8 * BLOCK, engine="analytic")

@@ -17,13 +17,13 @@ from fixtures import Command
 from places import SPUR_PAIR
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
-from tol3d.execution.pools import Execution
-from tol3d.runs.checkpoint import Checkpoint, CheckpointWarning
-from tol3d.runs.run import DamageWarning
-from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Watch
-from tol3d.study import blocks as block_module
-from tol3d.study.tally import Tally
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results import task as block_module
+from tol3d.study.runs.checkpoint import Checkpoint, CheckpointWarning
+from tol3d.study.runs.run import DamageWarning
+from tol3d.study.runs.worst import worst_trial
+from tol3d.study.tallies.tally import Tally
 
 BLOCK = 2000
 ANALYTIC = Overrides(trials=10 * BLOCK, engine="analytic")
@@ -38,7 +38,7 @@ SMALL_BLOCKS = f"""
 import os, sys, time
 from tol3d import cli
 from tol3d.study import blocks
-from tol3d.execution import folding
+from tol3d.study.execution import folding
 from tol3d.study import task
 blocks.BLOCK_TRIALS = {BLOCK}
 folding.KEEP_EVERY = 0.0

@@ -9,8 +9,8 @@ from toys.pins import PINS
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, open_run, run_scene
-from tol3d.runs.summary.kinds import default_kinds
-from tol3d.runs.summary.text import missing_mechanism
+from tol3d.study.runs.summary.kinds import default_kinds
+from tol3d.study.runs.summary.text import missing_mechanism
 
 WORDS = (
     "summary.json: expected the mechanism 'pins' (Python module 'toys.pins.system') that made this run, for its "

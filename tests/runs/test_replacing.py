@@ -12,10 +12,10 @@ from places import SPUR_PAIR
 
 from tol3d import Overrides, RunError, open_run, run_scene
 from tol3d.cli.arguments import scene_path
-from tol3d.execution.pools import Execution
-from tol3d.runs.manifest import MANIFEST
-from tol3d.runs.occupant import MovedAsideWarning
 from tol3d.simulate import Watch, folder_for, load, simulation_of
+from tol3d.study.execution.pools import Execution
+from tol3d.study.runs.manifest import MANIFEST
+from tol3d.study.runs.occupant import MovedAsideWarning
 
 FEW = Overrides(trials=20, engine="analytic", witness=0)
 OTHER_SEED = Overrides(trials=20, engine="analytic", witness=0, seed=5)

@@ -14,12 +14,12 @@ import pytest
 from places import SCENES, SPUR_PAIR
 
 from tol3d import InputError, Overrides, Run, RunError, load_scene, open_run, replay, run_scene
-from tol3d.execution import folding
-from tol3d.execution.pools import Execution
-from tol3d.runs.run import DamageWarning
-from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Watch
-from tol3d.study import blocks as block_module
+from tol3d.study.execution import folding
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results import task as block_module
+from tol3d.study.runs.run import DamageWarning
+from tol3d.study.runs.worst import worst_trial
 
 
 def assert_same_bits(first: dict[str, np.ndarray], second: dict[str, np.ndarray], rows: slice = slice(None)) -> None:

@@ -26,13 +26,13 @@ from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_sc
 from tol3d.cli.console import SafeConsole, shown_controls
 from tol3d.files import contained, read_contained
 from tol3d.report import comparison_report, draw_comparison, run_report
-from tol3d.runs.block_files import CHECKSUMS
-from tol3d.runs.manifest import MANIFEST
-from tol3d.runs.run import SUMMARY
-from tol3d.runs.summary.kinds import default_kinds
-from tol3d.runs.summary.text import SchemaWarning, typed, written
-from tol3d.runs.worst import worst_trial
 from tol3d.simulate import simulation_again
+from tol3d.study.runs.block_files import CHECKSUMS
+from tol3d.study.runs.manifest import MANIFEST
+from tol3d.study.runs.run import SUMMARY
+from tol3d.study.runs.summary.kinds import default_kinds
+from tol3d.study.runs.summary.text import SchemaWarning, typed, written
+from tol3d.study.runs.worst import worst_trial
 
 TRIALS = 24
 ESCAPE = "\x1b[2J\x1b]0;owned\x07"
@@ -323,7 +323,7 @@ def test_the_schema_that_is_printed_is_valid_and_accepts_runs(tol3d: Command, wh
 def test_a_key_that_the_schema_lacks_is_told_when_it_is_written(whole: Path) -> None:
     summary = summary_in(whole)
     summary["measures"]["normal backlash curve"]["new key"] = 1.0
-    told = r"curve\.new key: unknown key.*written down in tol3d/runs/summary/"
+    told = r"curve\.new key: unknown key.*written down in tol3d/study/runs/summary/"
     with pytest.warns(SchemaWarning, match=told):
         text = written(summary)
     assert json.loads(text) == summary

@@ -13,8 +13,8 @@ from loose_summaries import typed_run
 from numpy.typing import NDArray
 
 from tol3d import Run, run_scene
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.worst import worst_trial
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.worst import worst_trial
 
 TRAIN = """
 scene: one stage and an arm

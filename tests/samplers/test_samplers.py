@@ -28,21 +28,21 @@ from tol3d.gearing.model import Model, Positions
 from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.system import gear_model
 from tol3d.report.table import run_report
-from tol3d.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol, Stream
-from tol3d.samplers.latin_hypercube import ROUNDS, permuted
-from tol3d.samplers.monte_carlo import random_words
-from tol3d.samplers.sobol import LinearPoints, plain_jumps
 from tol3d.simulate import simulation_of
-from tol3d.statistics import Moments
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.findings import findings
-from tol3d.study.replicated import Replicated, rows_of_replicates
-from tol3d.study.sample import mean_interval, sigma_interval
-from tol3d.study.simulation import Simulation
-from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.system.outcome import Columns
-from tol3d.system.trials import Trials
+from tol3d.statistics.estimates import Moments
+from tol3d.statistics.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol, Stream
+from tol3d.statistics.samplers.latin_hypercube import ROUNDS, permuted
+from tol3d.statistics.samplers.monte_carlo import random_words
+from tol3d.statistics.samplers.sobol import LinearPoints, plain_jumps
+from tol3d.study.results.findings import findings
+from tol3d.study.system.outcome import Columns
+from tol3d.study.system.trials import Trials
+from tol3d.study.tallies.replicated import Replicated, rows_of_replicates
+from tol3d.study.tallies.sample import mean_interval, sigma_interval
+from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.simulation import Simulation
 
 SPUR_PAIR = (ROOT / "scenes" / "spur_pair.yaml").read_text(encoding="utf-8")
 STUDY_LINE = "study: {trials: 2000, seed: 1, sampler: monte_carlo, engine: exact, witness: 20}"
@@ -489,7 +489,7 @@ def test_the_documents_studies_can_be_run(tmp_path: Path) -> None:
 
 def test_monte_carlo_does_not_wait_for_scipys_statistics() -> None:
     code = (
-        "import sys; from tol3d.samplers import MonteCarlo, Stream; import tol3d.simulate\n"
+        "import sys; from tol3d.statistics.samplers import MonteCarlo, Stream; import tol3d.simulate\n"
         "MonteCarlo(1).uniforms(Stream('a', '0', 0), 0, 10); print('scipy.stats' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -13,7 +13,7 @@ from tol3d import SceneError
 from tol3d.kinds import load_scene
 from tol3d.scene import Scene
 from tol3d.simulate import simulation_of
-from tol3d.system.mechanism import mechanism_of
+from tol3d.study.system.mechanism import mechanism_of
 
 Warned = Callable[..., Sequence[str]]
 """Warnings on a bundled scene in which some texts are replaced by others."""

@@ -19,11 +19,11 @@ import tol3d
 from tol3d import kinds
 from tol3d.errors import InputError, SceneError
 from tol3d.scene import Grammar, read_scene
+from tol3d.scene.bases import PartSpec
 from tol3d.scene.bundled import scene_path
 from tol3d.scene.entry import kind_of
-from tol3d.scene.part import PartSpec
 from tol3d.scene.schema import SECTIONS
-from tol3d.system.mechanism import Mechanism, mechanism_of
+from tol3d.study.system.mechanism import Mechanism, mechanism_of
 
 TEXT = """\
 scene: springs
@@ -342,7 +342,7 @@ def test_a_summary_is_read_by_the_kinds_that_its_mechanism_includes() -> None:
 
 NEW_FILES = {
     "tol3d/gearing/grammar/pulley.py": (
-        '"""A pulley."""\n\nfrom typing import ClassVar, Literal\n\nfrom tol3d.scene.part import PartSpec\n\n\n'
+        '"""A pulley."""\n\nfrom typing import ClassVar, Literal\n\nfrom tol3d.scene.bases import PartSpec\n\n\n'
         'class PulleySpec(PartSpec):\n    """A pulley."""\n\n    words: ClassVar[str] = "a pulley"\n\n'
         '    kind: Literal["pulley"]\n'
     ),
@@ -352,8 +352,8 @@ NEW_FILES = {
         'class GrooveSpec(ToothThicknessSpec):\n    """A groove."""\n\n    kind: Literal["groove"]\n'
     ),
     "tol3d/gearing/grammar/belt.py": (
-        '"""A belt."""\n\nfrom typing import ClassVar, Literal\n\nfrom tol3d.scene.move import MoveSpec\n'
-        "from tol3d.scene.reference import Reference\n\n\n"
+        '"""A belt."""\n\nfrom typing import ClassVar, Literal\n\nfrom tol3d.scene.bases import MoveSpec\n'
+        "from tol3d.scene.entry import Reference\n\n\n"
         'class BeltSpec(MoveSpec):\n    """A belt."""\n\n    words: ClassVar[str] = "a belt"\n\n'
         '    kind: Literal["belt"]\n\n    def references(self) -> tuple[Reference, ...]:\n        return ()\n'
     ),

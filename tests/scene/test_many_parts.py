@@ -21,7 +21,7 @@ from tol3d.errors import SceneError
 from tol3d.kinds import all_kinds
 from tol3d.scene import Scene, read_scene
 from tol3d.scene.edit import with_tolerances, write_scene
-from tol3d.scene.node import plain
+from tol3d.scene.place import plain
 from tol3d.scene.text import read_scene_text
 from tol3d.simulate import load, replay, run_scene, simulation_of
 

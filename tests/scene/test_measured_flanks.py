@@ -8,8 +8,8 @@ import pytest
 
 from tol3d import load_scene, open_run, replay, run_scene
 from tol3d.errors import RunError, SceneError
-from tol3d.execution.pools import Execution
 from tol3d.gearing.model import Model, model_from_scene
+from tol3d.study.execution.pools import Execution
 
 SCENE = """
 scene: teeth

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
 from typing import Any, Final
 
-from tol3d.cycloid.mechanism import CYCLOID
+from tol3d.gearing.cycloid.mechanism import CYCLOID
 from tol3d.gearing.mechanism import GEARING
+from tol3d.gearing.planetary.mechanism import PLANETARY
 from tol3d.kinds import summary_kinds
-from tol3d.planetary.mechanism import PLANETARY
 from tol3d.scene import Grammar
 
 Schema = Mapping[str, Any]

@@ -23,7 +23,6 @@ from said_fields import fields_said, fields_within, models_within, unsaid
 from scene_schema import judged
 
 from tol3d import Scene, load_scene
-from tol3d.distributions import Rayleigh
 from tol3d.errors import SceneError
 from tol3d.gearing.grammar.measures import GearStudyOptions, NormalBacklashSpec
 from tol3d.gearing.grammar.moves import MeshSpec
@@ -31,9 +30,10 @@ from tol3d.gearing.grammar.parts import GearSpec, SpurGearSpec
 from tol3d.gearing.mechanism import GEARING
 from tol3d.kinds import all_kinds
 from tol3d.scene import Grammar, read_scene
-from tol3d.scene.node import plain
+from tol3d.scene.place import plain
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.scene.text import core_value, scene_text
+from tol3d.statistics.distributions import Rayleigh
 
 GEARS = Grammar((GEARING,))
 Geared = GEARS.scene

@@ -17,7 +17,7 @@ from tol3d.gearing.grammar.moves import GearMeshSpec, TrainSpec, meshes_of
 from tol3d.gearing.grammar.parts import ArmSpec, BearingSpec, GearSpec, ShaftReference, ShaftSpec, gears_on
 from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.kinds import all_kinds
-from tol3d.scene.reference import any_of
+from tol3d.scene.entry import any_of
 
 DOCUMENT = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
 SHOULDER = re.findall(r"```yaml\n(.*?)```", DOCUMENT, re.DOTALL)[2]

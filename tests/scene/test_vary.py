@@ -10,7 +10,7 @@ from tol3d.scene import Scene
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.scene.load import scene_of_text
 from tol3d.simulate import load, run_scene, simulation_of
-from tol3d.study.overrides import Overrides
+from tol3d.study.trials.overrides import Overrides
 
 QUICK = ("spur_pair", "measured_teeth", "bolted_cover")
 

@@ -14,7 +14,7 @@ from tol3d.cli import app
 from tol3d.errors import InputError
 from tol3d.kinds import all_mechanisms, load_scene
 from tol3d.simulate import load, simulation_of
-from tol3d.system.starter import Starter, starter_named, starters_of
+from tol3d.study.system.mechanism import Starter, starter_named, starters_of
 
 STARTERS = {one.name: one for own in all_mechanisms() for one in starters_of(own)}
 TRIALS = 64
@@ -113,7 +113,7 @@ def test_a_mechanism_from_outside_brings_its_own_and_one_without_is_said(tmp_pat
 
 
 def test_two_starters_of_one_name_are_told_apart_by_their_mechanisms() -> None:
-    twin = replace(PARABOLA, starters="tol3d.planetary:starters")
+    twin = replace(PARABOLA, starters="tol3d.gearing.planetary:starters")
     with known(twin):
         with pytest.raises(InputError, match="found 2: planetary/planetary, parabola/planetary"):
             starter_named("planetary", all_mechanisms())

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import trimesh
 
+from tol3d.cad.solids import display_mesh, measuring_strips, strip_mesh
 from tol3d.gears import LEFT, RIGHT, BevelGear, pitch_angles
-from tol3d.solids import display_mesh, measuring_strips, strip_mesh
 
 ALPHA = math.radians(20.0)
 GEARS = {

@@ -17,9 +17,9 @@ import trimesh
 from of_kind import of_kind
 from places import ROOT, TESTS
 
+from tol3d.cad.solids import BuiltShape, DisplayMesh, PosedShape, display_mesh, export_step
 from tol3d.numerics.sources import source, sources_of
 from tol3d.report.body import built_body
-from tol3d.solids import BuiltShape, DisplayMesh, PosedShape, display_mesh, export_step
 
 BUILDERS = """
 import cadquery as cq

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tol3d.cad.solids.distance import Nearest, NearestPoints, Surface, cylinder, mesh_surface, put, sphere
 from tol3d.numerics import frames
-from tol3d.solids.distance import Nearest, NearestPoints, Surface, cylinder, mesh_surface, put, sphere
 
 Array = NDArray[np.float64]
 

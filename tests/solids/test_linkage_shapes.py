@@ -9,9 +9,9 @@ import trimesh
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.solids import BuiltShape, display_mesh
-from tol3d.solids.cad import solid_of
-from tol3d.solids.linkage_parts import BallScrew, BallSocket, Nut, Rod, SphericalGear, ThrustRing
+from tol3d.cad.solids import BuiltShape, display_mesh
+from tol3d.cad.solids.cad import solid_of
+from tol3d.cad.solids.numbered_parts import BallScrew, BallSocket, Nut, Rod, SphericalGear, ThrustRing
 
 DEGREE = math.pi / 180
 WRITTEN: dict[tuple[str, str], BuiltShape] = {

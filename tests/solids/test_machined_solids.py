@@ -13,12 +13,12 @@ from of_kind import of_kind
 from places import SCENES
 
 from tol3d import load_scene
+from tol3d.cad.solids import BuiltShape, PosedShape, display_mesh, export_step
+from tol3d.cad.solids.cad import solid_of
+from tol3d.cad.solids.numbered_parts import Bracket, Cover, Housing
+from tol3d.cad.solids.triangulation import triangulated
 from tol3d.parts.bracket import bracket
 from tol3d.parts.details import Bore, Boss, Hole, Slot, Spigot
-from tol3d.solids import BuiltShape, PosedShape, display_mesh, export_step
-from tol3d.solids.cad import solid_of
-from tol3d.solids.machined import Bracket, Cover, Housing
-from tol3d.solids.triangulation import triangulated
 
 PARTS = ("base", "housing", "cover", "block", "bracket")
 

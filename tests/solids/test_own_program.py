@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hostile_folder import hostile, run_from
 
+from tol3d.cad.solids import display_mesh, own_program
+from tol3d.cad.solids.kept_shape import PATIENCE_VARIABLE, KeptShape, made_here, run_program
 from tol3d.errors import GeometryError, InputError
 from tol3d.files import FileContent
-from tol3d.solids import display_mesh, own_program
-from tol3d.solids.kept_shape import PATIENCE_VARIABLE, KeptShape, made_here, run_program
 
 PROGRAM = b"""
 import cadquery as cq

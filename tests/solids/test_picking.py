@@ -8,9 +8,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from tol3d.cad.solids.named_faces import pick_faces
+from tol3d.cad.solids.pick import Pick, PickedFace, PickError
 from tol3d.parts.named_solid import NamedSolid, numbered
-from tol3d.solids.pick import Pick, PickedFace, PickError
-from tol3d.solids.picking import pick_faces
 
 Array = NDArray[np.float64]
 

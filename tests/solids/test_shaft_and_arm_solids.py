@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from of_kind import known, of_kind
 from scipy.integrate import quad
 
+from tol3d.cad.solids import ArmBody, PosedBody, ShaftBody, display_mesh, export_step
 from tol3d.errors import GeometryError
 from tol3d.parts.arm import BALL_SHARE, HUB_HEIGHT, HUB_SHARE, arm
 from tol3d.parts.named_solid import NamedSolid, to_step
 from tol3d.parts.shaft import chamfer, shaft
-from tol3d.solids import ArmBody, PosedBody, ShaftBody, display_mesh, export_step
 
 ARM_VOLUME = 1e-4  # relative; where a bar leaves the hub OCC trims both by splines: 8e-5 of the shortest arms at most
 SHAFT_FACES = {"side", "front", "back", "front chamfer", "back chamfer"}
@@ -302,7 +302,7 @@ def test_a_body_s_mesh_is_kept_and_read_back_without_cad(monkeypatch: pytest.Mon
     def refuse() -> NoReturn:
         raise AssertionError("built again")
 
-    monkeypatch.setattr(sys.modules["tol3d.solids.display_mesh"], "cad", refuse)
+    monkeypatch.setattr(sys.modules["tol3d.cad.solids.display_mesh"], "cad", refuse)
     again = display_mesh(body, 0.2)
     assert np.array_equal(built.vertices, again.vertices)
     assert np.array_equal(built.triangles, again.triangles)

@@ -17,21 +17,21 @@ import pytest
 import trimesh
 from of_kind import known, of_kind
 
-from tol3d.errors import RunError
-from tol3d.gears import LEFT, RIGHT, SpurGear
-from tol3d.gears.flank import Flank
-from tol3d.numerics.cache_folder import cache_folder
-from tol3d.solids import (
+from tol3d.cad.solids import (
     FlankStrips,
     PosedGear,
     cache,
     display_mesh,
     export_step,
-    flank_strips,
     measuring_strips,
     strip_mesh,
+    strips,
 )
-from tol3d.solids.cache import CacheWarning
+from tol3d.cad.solids.cache import CacheWarning
+from tol3d.errors import RunError
+from tol3d.gears import LEFT, RIGHT, SpurGear
+from tol3d.gears.toothed_gear import Flank
+from tol3d.numerics.cache_folder import cache_folder
 
 DEG = math.pi / 180
 FLANK_BOUND = 1e-5  # mm; 0.01 um
@@ -299,7 +299,7 @@ def test_what_is_kept_is_read_back_bit_for_bit_without_building(
     own_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     built = measuring_strips(SMALL, 20)
-    monkeypatch.setattr(flank_strips, "cad", _refuse_to_build)
+    monkeypatch.setattr(strips, "cad", _refuse_to_build)
     assert _same(built, measuring_strips(SMALL, 20))
     with pytest.raises(AssertionError, match="built again"):
         measuring_strips(SMALL, 21)
@@ -324,7 +324,7 @@ def test_every_field_of_a_gear_is_in_the_key(own_cache: Path, field: dataclasses
 
 def test_a_changed_builder_makes_old_entries_unreachable(own_cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     measuring_strips(SMALL, 20)
-    monkeypatch.setattr(flank_strips, "cad", _refuse_to_build)
+    monkeypatch.setattr(strips, "cad", _refuse_to_build)
     monkeypatch.setattr(cache, "sources_of", lambda module: {module: "another program"})
     with pytest.raises(AssertionError, match="built again"):
         measuring_strips(SMALL, 20)
@@ -349,7 +349,7 @@ def test_a_damaged_entry_is_built_anew_and_mended(
     whole = entry.read_bytes()
     entry.write_bytes(damage(whole))
     assert _same(built, measuring_strips(SMALL, 20))
-    monkeypatch.setattr(flank_strips, "cad", _refuse_to_build)
+    monkeypatch.setattr(strips, "cad", _refuse_to_build)
     assert _same(built, measuring_strips(SMALL, 20))
 
 
@@ -374,8 +374,8 @@ def test_a_disk_that_fills_up_leaves_no_torn_file(own_cache: Path, monkeypatch: 
 BUILD_TOGETHER = """
 import hashlib, math, pathlib, sys, time
 from tol3d.gears import SpurGear
-from tol3d.solids import measuring_strips
-from tol3d.solids.lazy import cad
+from tol3d.cad.solids import measuring_strips
+from tol3d.cad.solids.lazy import cad
 cad()
 mine, other = (pathlib.Path(name) for name in sys.argv[1:3])
 mine.touch()
@@ -403,7 +403,7 @@ def test_two_processes_that_build_at_once_end_with_one_whole_entry(own_cache: Pa
 WARM = """
 import math, sys
 from tol3d.gears import SpurGear
-from tol3d.solids import measuring_strips
+from tol3d.cad.solids import measuring_strips
 measuring_strips(SpurGear(8, 1.0, math.radians(20), 5.0, profile_shift=0.4), 20)
 print(sorted({"cadquery", "OCP", "scipy"} & set(sys.modules)))
 """

@@ -6,7 +6,7 @@ import math
 import pytest
 
 from tol3d.errors import InputError
-from tol3d.standards.iso_1328_2 import DIAMETERS, FINE_MODULES, KINDS, tolerance
+from tol3d.statistics.standards.iso_1328_2 import DIAMETERS, FINE_MODULES, KINDS, tolerance
 
 RUN_OUT = (1.5, 2.5, 3.0, 4.5, 6.5, 9.0, 13, 18, 25, 36, 51, 72, 102)
 """Run-out of d 5 to 20 mm and m 0.5 to 2 mm, grades 0 to 12, as tables of the standard print it."""

@@ -18,8 +18,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tol3d.errors import InputError
-from tol3d.standards import iso_286, iso_2768
-from tol3d.standards.iso_286 import EXCEPTIONS, LETTERS, OUTSIDE, RANGES, STEPS, limits, tolerance
+from tol3d.statistics.standards import iso_286, iso_2768
+from tol3d.statistics.standards.iso_286 import EXCEPTIONS, LETTERS, OUTSIDE, RANGES, STEPS, limits, tolerance
 
 HERE = Path(__file__).parent
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tol3d.statistics import IndependentSums, independent_shares
-from tol3d.statistics.clusters import Clusters
-from tol3d.statistics.lazy import sparse_products
-from tol3d.statistics.linear_fit import LinearFit
+from tol3d.statistics.estimates import IndependentSums, independent_shares
+from tol3d.statistics.estimates.clusters import Clusters
+from tol3d.statistics.estimates.lazy import sparse_products
+from tol3d.statistics.estimates.linear_fit import LinearFit
 
 Array = NDArray[np.float64]
 

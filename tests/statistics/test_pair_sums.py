@@ -8,9 +8,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy import stats
 
-from tol3d.statistics import PairSums
-from tol3d.statistics.lazy import quick_products
-from tol3d.statistics.variance_shares import Products, RegressorSums, plain_products
+from tol3d.statistics.estimates import PairSums
+from tol3d.statistics.estimates.lazy import quick_products
+from tol3d.statistics.estimates.variance_shares import Products, RegressorSums, plain_products
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from hypothesis.extra import numpy as nps
 from numpy.typing import NDArray
 from scipy import stats
 
-from tol3d.statistics import (
+from tol3d.statistics.estimates import (
     Agreement,
     Grid,
     LimitCounts,

@@ -10,12 +10,12 @@ import trimesh
 from fixtures import Command
 from printing import printed
 
+from tol3d.cad.step.reading import read_step
+from tol3d.cad.step.step_shape import StepShape
 from tol3d.files import read_file
 from tol3d.report.body import Body, built_body
-from tol3d.report.step_features import features_report
+from tol3d.report.step_tables import features_report
 from tol3d.simulate import Overrides, run_scene
-from tol3d.step.reading import read_step
-from tol3d.step.step_shape import StepShape
 
 SCENE = """
 scene: painted

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from tol3d.step import StepText, frame, read_step_text
-from tol3d.step.feature import NamedFeature
-from tol3d.step.meaning import meanings
+from tol3d.cad.step import StepText, frame, read_step_text
+from tol3d.cad.step.feature import NamedFeature
+from tol3d.cad.step.meaning import meanings
 
 BASE = """ISO-10303-21;HEADER;FILE_SCHEMA(('AP242'));ENDSEC;DATA;
 #1=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));

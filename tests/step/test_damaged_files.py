@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from nist import FILES, bodies, starting, step_bytes, step_text
 
-from tol3d.step import StepError, StepText, read_step_text
+from tol3d.cad.step import StepError, StepText, read_step_text
 
 MODEL = "CTC-01"
 SEED = 242

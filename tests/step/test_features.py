@@ -24,11 +24,11 @@ from tol3d.assembly.grammar.features import ConeSpec
 from tol3d.assembly.grammar.features.selector import SelectorSpec
 from tol3d.assembly.model import Cone
 from tol3d.assembly.picking.step_picks import face_of, with_numbers
+from tol3d.cad.step.found_features import FoundFeature
+from tol3d.cad.step.reading import StepFile, StepPart, read_step
+from tol3d.cad.step.selectors import Selector, line_of, selected
 from tol3d.errors import InputError
 from tol3d.files import FileContent
-from tol3d.step.found import FoundFeature
-from tol3d.step.reading import StepFile, StepPart, read_step
-from tol3d.step.selecting import Selector, line_of, selected
 
 EXACT = 1e-9  # mm; what the text of a file is written to, and rounding
 

@@ -8,14 +8,13 @@ import pytest
 from nist import FILES, step_text
 from places import TESTS
 
-from tol3d.step import frame
-from tol3d.step.datum import Compartment
-from tol3d.step.feature import NamedFeature
-from tol3d.step.meaning import MATERIAL, Meaning, Meanings, meanings, surfaces_of
-from tol3d.step.nominals import disagreements, measured
-from tol3d.step.outline import StepText
-from tol3d.step.surfaces import Surface
-from tol3d.step.tolerance import ProjectedZone
+from tol3d.cad.step import frame
+from tol3d.cad.step.datum import Compartment
+from tol3d.cad.step.feature import NamedFeature
+from tol3d.cad.step.meaning import MATERIAL, Meaning, Meanings, meanings, surfaces_of
+from tol3d.cad.step.outline import StepText, disagreements, measured
+from tol3d.cad.step.surfaces import Surface
+from tol3d.cad.step.tolerance import ProjectedZone
 
 with (TESTS / "step" / "expected.csv").open(encoding="utf-8", newline="") as opened:
     ROWS = list(csv.DictReader(opened))

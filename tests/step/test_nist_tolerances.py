@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from nist import FILES, bodies, starting, step_text
 
-from tol3d.step import Tolerance, frame
+from tol3d.cad.step import Tolerance, frame
 
 COUNTS = {"CTC-01": 6, "FTC-07": 27, "FTC-10": 40, "STC-06": 25, "STC-07": 22, "CTC-05": 10}
 DATUMS = {"CTC-01": 3, "FTC-07": 5, "FTC-10": 11, "STC-06": 6, "STC-07": 5, "CTC-05": 4}

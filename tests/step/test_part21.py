@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tol3d.step import StepError
-from tol3d.step.part21 import Part21, read_part21
-from tol3d.step.values import Binary, Enumeration, Missing, Reference, Typed, Value, decoded, read_records
+from tol3d.cad.step import StepError
+from tol3d.cad.step.part21 import Part21, read_part21
+from tol3d.cad.step.values import Binary, Enumeration, Missing, Reference, Typed, Value, decoded, read_records
 
 HEADER = "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('a','b'),'2;1');\nFILE_NAME('x.stp','',(''),(''),'','','');\n"
 SCHEMA = "FILE_SCHEMA(('AP242'));\nENDSEC;\n"

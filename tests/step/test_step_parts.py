@@ -15,14 +15,14 @@ from foreign_parts import halved_plate, slotted_block, step_file
 from tol3d import load_scene
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.cad.step import reading
+from tol3d.cad.step.reading import read_step
 from tol3d.errors import SceneError
 from tol3d.files import read_file
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE
-from tol3d.runs.run import open_run
 from tol3d.simulate import run_scene, simulation_again
-from tol3d.step import reading
-from tol3d.step.reading import read_step
-from tol3d.study.overrides import Overrides
+from tol3d.study.runs.run import open_run
+from tol3d.study.trials.overrides import Overrides
 
 SELECTED = {
     "block": {
@@ -277,7 +277,7 @@ def test_solids_are_shown_by_triangles_and_written_by_another_process(
     def refuse() -> Any:
         raise AssertionError("a shape of a foreign file in this process")
 
-    monkeypatch.setattr(sys.modules["tol3d.solids.display_mesh"], "cad", refuse)
+    monkeypatch.setattr(sys.modules["tol3d.cad.solids.display_mesh"], "cad", refuse)
     out = str(tmp_path / "exported")
     assert tol3d("export", str(tmp_path / "run"), "--nominal", "--format", "stl", "--out", out)[0] == 0
     code, _, wrong = tol3d("export", str(tmp_path / "run"), "--nominal", "--format", "step", "--out", out)

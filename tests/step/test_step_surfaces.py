@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from tol3d.step.feature import NamedFeature
-from tol3d.step.part21 import read_part21
-from tol3d.step.shape import kind_of, shape_of
-from tol3d.step.structure import Product, Solid, Structure
-from tol3d.step.surfaces import Surface, merged, surface_of
-from tol3d.step.units import Unit
+from tol3d.cad.step.feature import NamedFeature
+from tol3d.cad.step.part21 import read_part21
+from tol3d.cad.step.shape import kind_of, shape_of
+from tol3d.cad.step.structure import Product, Solid, Structure
+from tol3d.cad.step.surfaces import Surface, merged, surface_of
+from tol3d.cad.step.units import Unit
 
 INCH = Unit("in", "length", 25.4)
 TEXT = """ISO-10303-21;HEADER;FILE_SCHEMA(('AP242'));ENDSEC;DATA;

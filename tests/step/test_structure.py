@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tol3d.step import Leaf, StepError, StepText, read_step_text
+from tol3d.cad.step import Leaf, StepError, StepText, read_step_text
 
 HEAD = "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AP242'));\nENDSEC;\nDATA;\n"
 UNITS = """#1=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));

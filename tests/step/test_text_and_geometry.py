@@ -5,8 +5,8 @@ import pytest
 from foreign_parts import nist_file
 from nist import FILES, step_text
 
-from tol3d.step.meaning import surfaces_of
-from tol3d.step.reading import read_step
+from tol3d.cad.step.meaning import surfaces_of
+from tol3d.cad.step.reading import read_step
 
 pytestmark = pytest.mark.slow
 

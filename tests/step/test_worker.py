@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from foreign_parts import nist_file, slotted_block, step_file
 
+from tol3d.cad.step import reading
+from tol3d.cad.step.reading import StepPart, read_step
 from tol3d.errors import InputError
 from tol3d.files import FileContent
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE
-from tol3d.step import reading
-from tol3d.step.reading import StepPart, read_step
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def test_whatever_it_does_is_one_line(
     program: str, words: str, block: FileContent, fresh: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     limits = (
-        "import json, sys; from tol3d.step.limits import limit_this_process; "
+        "import json, sys; from tol3d.cad.step.limits import limit_this_process; "
         "own = json.load(open(sys.argv[1] + '/order.json')); limit_this_process(own['megabytes'], own['seconds'])\n"
     )
     monkeypatch.setattr(reading, "PROGRAM", limits + program)
@@ -155,5 +155,5 @@ def test_only_the_other_process_imports_open_cascade() -> None:
         text = path.read_text("utf-8")
         imports = re.findall(r"^(?:from|import) ([\w.]+)", text, re.MULTILINE)
         own = {"OCP", "cadquery"} & {name.partition(".")[0] for name in imports}
-        own |= {"tol3d.step.worker", "tol3d.step.step_cad"} & set(imports)
+        own |= {"tol3d.cad.step.worker", "tol3d.cad.step.step_cad"} & set(imports)
         assert not own or path.name in apart

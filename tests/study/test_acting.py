@@ -18,24 +18,24 @@ from tol3d.analyses.allocation import allocation
 from tol3d.analyses.before_after import what_if
 from tol3d.analyses.rare_events import limits_left
 from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.shown_changes import changes_lines
 from tol3d.analyses.side_by_side import methods
 from tol3d.analyses.stated_changes import Change
 from tol3d.analyses.tolerance_effects import effects
 from tol3d.analyses.tolerance_search import Question, Target
 from tol3d.analyses.what_to_change import changes_of
-from tol3d.analyses.what_to_change_table import changes_lines
-from tol3d.distributions.normal import Normal
 from tol3d.errors import InputError
 from tol3d.report.page import page
 from tol3d.simulate import load
-from tol3d.study.acting import acting, looked_at
-from tol3d.study.overrides import simulation_of
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Scalar
-from tol3d.system.measure import Measure
-from tol3d.system.plain import PlainContributor, PlainMeasure
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.study.effects.acting_contributors import acting, looked_at
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.draw import Scalar
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.plain import PlainContributor, PlainMeasure
+from tol3d.study.trials.overrides import simulation_of
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 SCENES = Path(__file__).parents[2] / "scenes"
 LIMIT = 1.03

@@ -13,9 +13,7 @@ from printing import printed
 from scipy import integrate, stats
 
 from tol3d import Run, run_scene
-from tol3d.distributions.base import Distribution
-from tol3d.distributions.normal import Normal
-from tol3d.machine.either_side import EitherSide
+from tol3d.gearing.machine.open_chains import EitherSide
 from tol3d.report.column import unexplained_words
 from tol3d.report.html.document import report_html
 from tol3d.report.html.frame import NARROW
@@ -23,13 +21,15 @@ from tol3d.report.html.svg import svg
 from tol3d.report.measure_table import contributors_table
 from tol3d.report.share_charts import pareto, percents_of, shown_names
 from tol3d.report.table import Detail, run_report
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.study import attribution
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn, redrawn
-from tol3d.study.summary import study_summary
-from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.system.plain import PlainMeasure, PlainSystem
+from tol3d.statistics.distributions.base import Distribution
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.study.results import attribution
+from tol3d.study.results.summary import study_summary
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.system.plain import PlainMeasure, PlainSystem
+from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn, redrawn
 
 Array = NDArray[np.float64]
 SURE = 5.0  # standard errors

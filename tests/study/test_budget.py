@@ -10,25 +10,26 @@ from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d import Overrides, load_scene
-from tol3d.distributions.normal import Normal
-from tol3d.runs.summary.run import Findings
-from tol3d.study import acting, attribution, budget
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.evaluation import Asked, Evaluation
-from tol3d.study.high_low_mean import extents
-from tol3d.study.overrides import simulation_of
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.study.summary import study_summary
-from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.study.task import materials_of, method_of
-from tol3d.system.draw import Draw, Planar, Scalar
-from tol3d.system.measure import Measure
-from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
-from tol3d.system.stated import component_slices, mean_deviations
-from tol3d.system.system import System
-from tol3d.system.trials import Trials
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.study.effects import acting_contributors
+from tol3d.study.effects.high_low_mean import extents
+from tol3d.study.results import attribution
+from tol3d.study.results.summary import study_summary
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.runs.summary.run import Findings
+from tol3d.study.system.draw import Draw, Planar, Scalar
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.study.system.system import System
+from tol3d.study.system.trials import Trials, component_slices, mean_deviations
+from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.study.trials import budget
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.evaluation import Asked, Evaluation
+from tol3d.study.trials.overrides import simulation_of
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 Array = NDArray[np.float64]
 
@@ -168,7 +169,7 @@ def test_measures_of_several_mean_builds_have_what_each_of_them_wants() -> None:
 
 def test_uses_that_want_little_leave_the_rest_to_the_others() -> None:
     """A million let 750 000 follow, 30 to 35 to 10 parts of 75; what tells shares and what acts has the rest."""
-    others = budget.OTHER_METHOD + attribution.MOST_OF_RUN + acting.SHARE
+    others = budget.OTHER_METHOD + attribution.MOST_OF_RUN + acting_contributors.SHARE
     assert sum(budget.SHARES.values()) + others == pytest.approx(1.0)
     everything: dict[budget.Use, float] = dict.fromkeys(budget.SHARES, 1e9)
     assert budget.shared(1e6, everything) == pytest.approx(

@@ -15,19 +15,19 @@ from tol3d import Overrides, SceneError, run_scene
 from tol3d.analyses.rare_events import rare_event
 from tol3d.analyses.response import response_of
 from tol3d.analyses.tolerance_effects import effects
-from tol3d.distributions.normal import Normal
-from tol3d.distributions.uniform import Uniform
-from tol3d.execution.pools import Execution
 from tol3d.simulate import load, replay, simulation_of
-from tol3d.statistics.variance_shares import RegressorSums, shares
-from tol3d.study.correlated import closed_form_of, value_correlations
-from tol3d.study.draws import drawn, drawn_ones
-from tol3d.study.first_order import first_orders
-from tol3d.system.closed_form import ClosedForm, Share
-from tol3d.system.copula import INDEPENDENT, Block, Copula
-from tol3d.system.draw import Draw, Scalar
-from tol3d.system.measure import Measure
-from tol3d.system.stated import component_slices
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.statistics.estimates.variance_shares import RegressorSums, shares
+from tol3d.study.effects.first_order import first_orders
+from tol3d.study.execution.pools import Execution
+from tol3d.study.system.closed_form import ClosedForm, Share
+from tol3d.study.system.copula import INDEPENDENT, Block, Copula
+from tol3d.study.system.draw import Draw, Scalar
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.trials import component_slices
+from tol3d.study.trials.correlated import closed_form_of, value_correlations
+from tol3d.study.trials.draws import drawn, drawn_ones
 
 DOOR = Path(__file__).parents[2] / "scenes" / "door.yaml"
 UPPER, DOOR_HINGE, BODY_HINGE = "upper edge x", "door upper hinge x", "body upper hinge x"

@@ -14,16 +14,16 @@ from toys.rods.system import RodsSystem, Scaled
 
 from tol3d import Overrides, Run, replay, run_scene
 from tol3d.analyses.response import response_of
-from tol3d.distributions import Distribution
-from tol3d.distributions.uniform import Uniform
-from tol3d.execution.pools import Execution
-from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
-from tol3d.study.draws import drawn, streams_of
-from tol3d.study.first_order import first_orders
-from tol3d.system.dependent import in_draw_order
-from tol3d.system.draw import Scalar
-from tol3d.system.faults import UnfitError
+from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.study.effects.first_order import first_orders
+from tol3d.study.execution.pools import Execution
+from tol3d.study.runs.run import open_run
+from tol3d.study.system.dependent import in_draw_order
+from tol3d.study.system.draw import Scalar
+from tol3d.study.system.faults import UnfitError
+from tol3d.study.trials.draws import drawn, streams_of
 
 SCENE = TOYS / "rods" / "rods.yaml"
 COUNT = 200_000

@@ -16,16 +16,15 @@ from thinned import thinned
 
 from tol3d import Overrides, load_scene
 from tol3d.assembly.methods import TorsorMethod
+from tol3d.gearing.machine.methods import MachineMethod
 from tol3d.gearing.methods.analytic import AnalyticMethod
-from tol3d.machine.methods import MachineMethod
 from tol3d.simulate import simulation_of
-from tol3d.study.agreement.differences import explanations
-from tol3d.study.agreement.explanation import Explanation, faults
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.system.stated import component_slices
-from tol3d.system.trials import Trials
+from tol3d.study.results.agreement.differences import explanations
+from tol3d.study.results.agreement.explanation import Explanation, faults
+from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
 
 LONG = ("every_assembly_field", "hole_and_slot", "gearbox_in_housing", "housed_gears", "bolted_cover", "box_with_discs")
 METHODS: Mapping[str, Any] = {

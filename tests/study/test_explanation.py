@@ -26,7 +26,6 @@ from shipped import shipped
 from thinned import thinned
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.distributions import Constant
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.methods.geometric import GeometricMethod
@@ -34,10 +33,11 @@ from tol3d.gearing.model import Model, Scalar, model_from_scene
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gears import BevelGear
 from tol3d.report.table import run_report
-from tol3d.study.agreement.differences import explanations
-from tol3d.study.agreement.explanation import Explanation, faults
-from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.system.outcome import Columns
+from tol3d.statistics.distributions import Constant
+from tol3d.study.results.agreement.differences import explanations
+from tol3d.study.results.agreement.explanation import Explanation, faults
+from tol3d.study.system.outcome import Columns
+from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
 
 ALPHA = math.radians(20.0)
 CONTRIBUTORS = (

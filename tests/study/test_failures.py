@@ -20,9 +20,9 @@ from tol3d.gearing.engines import STATUS_TEXT
 from tol3d.gearing.engines.gaps import STATUSES
 from tol3d.report import comparison_report, run_report
 from tol3d.report.compare import difference_of
-from tol3d.runs.worst import worst_trial
-from tol3d.study import blocks
-from tol3d.system.outcome import SEATED, outcome_of
+from tol3d.study.results import task
+from tol3d.study.runs.worst import worst_trial
+from tol3d.study.system.outcome import SEATED, outcome_of
 
 JAMMED = "interferes"
 ALPHA = math.radians(20.0)
@@ -285,7 +285,7 @@ def test_mean_sigma_quantiles_bars_and_differences_are_of_the_builds_that_seated
 
 
 def test_failed_builds_count_the_same_in_any_blocks(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(blocks, "BLOCK_TRIALS", 3000)
+    monkeypatch.setattr(task, "BLOCK_TRIALS", 3000)
     cut = run_scene(tight(tmp_path), overrides=Overrides(trials=TRIALS), out=tmp_path / "run")
     for name, measure in run.summary["measures"].items():
         assert cut.summary["measures"][name]["status"] == measure["status"]

@@ -6,18 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from tol3d.distributions import Constant, Normal, Rayleigh, Uniform
 from tol3d.numerics.arrays import Array
 from tol3d.report.check import check_report
 from tol3d.report.sheet import as_text
-from tol3d.study.first_order import FirstOrder, first_orders
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.study.task import materials_of, method_of
-from tol3d.system.draw import Ball, Each, Planar, Scalar
-from tol3d.system.measure import Measure
-from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
-from tol3d.system.trials import Trials
+from tol3d.statistics.distributions import Constant, Normal, Rayleigh, Uniform
+from tol3d.study.effects.first_order import FirstOrder, first_orders
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.system.draw import Ball, Each, Planar, Scalar
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 UM = 1e-3  # mm
 SLOPES = {"size": (3.0,), "anywhere": (3.0, -4.0), "eastwards": (3.0, -4.0), "point": (1.0, 2.0, 2.0)}

@@ -13,19 +13,19 @@ from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d import Overrides, Scene, load_scene, run_scene
-from tol3d.distributions.uniform import Uniform
-from tol3d.study import high_low_mean
-from tol3d.study.evaluation import Evaluation
-from tol3d.study.first_order import first_order
-from tol3d.study.high_low_mean import extents, high_low_mean_percents, high_low_mean_ranges
-from tol3d.study.overrides import simulation_of
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.study.task import materials_of, method_of
-from tol3d.system.draw import Planar, Scalar
-from tol3d.system.measure import Measure
-from tol3d.system.plain import PlainMeasure, PlainSystem
-from tol3d.system.stated import mean_deviations
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.study.effects import high_low_mean
+from tol3d.study.effects.first_order import first_order
+from tol3d.study.effects.high_low_mean import extents, high_low_mean_percents, high_low_mean_ranges
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.system.draw import Planar, Scalar
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.plain import PlainMeasure, PlainSystem
+from tol3d.study.system.trials import mean_deviations
+from tol3d.study.trials.evaluation import Evaluation
+from tol3d.study.trials.overrides import simulation_of
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 Array = NDArray[np.float64]
 

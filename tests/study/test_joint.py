@@ -17,14 +17,14 @@ from toys.parabola import PARABOLA
 from toys.registered import TOYS, known
 
 from tol3d import Overrides, Run, RunError, open_run, run_scene
-from tol3d.execution.pools import Execution
 from tol3d.report import run_report
-from tol3d.runs.summary.kinds import default_kinds
-from tol3d.runs.summary.text import typed
 from tol3d.simulate import Watch
-from tol3d.study import blocks
-from tol3d.study import joint as joint_of_study
-from tol3d.study.joint import MOST_IN_SUMMARY
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results import task
+from tol3d.study.runs.summary.kinds import default_kinds
+from tol3d.study.runs.summary.text import typed
+from tol3d.study.tallies import joint as joint_of_study
+from tol3d.study.tallies.joint import MOST_IN_SUMMARY
 
 SPRING = TOYS / "parabola" / "spring.yaml"
 TRIALS = 20_000
@@ -269,7 +269,7 @@ def test_even_samplers_tell_the_error_of_the_yield_by_replicates_and_none_of_r(t
 @pytest.mark.slow
 def test_bits_do_not_depend_on_workers_nor_on_an_interruption(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The interrupted run keeps no trials, so that what it had counted comes from its checkpoint."""
-    monkeypatch.setattr(blocks, "BLOCK_TRIALS", 1000)
+    monkeypatch.setattr(task, "BLOCK_TRIALS", 1000)
     asked, kept_not = Overrides(trials=7700), Execution(keep_trials=False)
     first = run_scene(SPRING, overrides=asked, out=tmp_path / "one").summary["joint"]
     several = run_scene(SPRING, overrides=asked, out=tmp_path / "two", execution=Execution(workers=3))

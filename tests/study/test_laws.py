@@ -25,13 +25,13 @@ from toys.registered import TOYS, known
 
 import tol3d
 from tol3d import InputError, Overrides, Run, SceneError, load_scene, open_run, run_scene
-from tol3d.distributions import DistributionSpec
 from tol3d.files import Files
 from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.report.check import check_report
 from tol3d.scene.options import StudyOptions
 from tol3d.simulate import simulation_of
-from tol3d.system.mechanism import Mechanism
+from tol3d.statistics.distributions import DistributionSpec
+from tol3d.study.system.mechanism import Mechanism
 
 TRIALS = 20_000
 LOWER, UPPER, K = -40.0, -10.0, 3.0  # um

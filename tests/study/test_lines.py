@@ -8,19 +8,19 @@ from assembly_trials import scene_of
 from fixtures import Command
 
 from tol3d import InputError
-from tol3d.analyses.allocated_scene import allocated_scene, groups_of
 from tol3d.analyses.allocation import allocation
+from tol3d.analyses.allocation_section import allocated_scene, groups_of
 from tol3d.analyses.before_after import what_if
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
 from tol3d.analyses.tolerance_search import Question, Target
 from tol3d.analyses.what_to_change import ChangesQuestion, changes_of
-from tol3d.distributions import Uniform
 from tol3d.scene.edit import write_scene
 from tol3d.simulate import load, simulation_of
-from tol3d.study.lines import lines_of
-from tol3d.system.draw import Scalar
-from tol3d.system.plain import PlainContributor
+from tol3d.statistics.distributions import Uniform
+from tol3d.study.system.draw import Scalar
+from tol3d.study.system.plain import PlainContributor
+from tol3d.study.trials.simulation import lines_of
 
 FLOOR, RING = 8.0, 10.0  # um, sigmas of 3 sigma limits
 BASE = """  base:

@@ -11,28 +11,27 @@ from gear_trials import drawn_trials, simulated
 from places import SPUR_PAIR
 
 from tol3d import load_scene
+from tol3d.cad.solids import spur_cad
+from tol3d.cad.solids.spur_cad import sample_flanks
 from tol3d.gearing.builds.build import build
-from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
+from tol3d.gearing.engines.exact.deviation_sums import compiled_displacements
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gearing.system import GearSystem
 from tol3d.gears import SpurGear
-from tol3d.runs.checkpoint import Checkpoint
-from tol3d.samplers.replicates import SamplerKind
 from tol3d.simulate import Execution, run_scene
-from tol3d.solids import spur_cad
-from tol3d.solids.spur_cad import sample_flanks
-from tol3d.statistics import IndependentSums, independent_shares
-from tol3d.statistics.variance_shares import plain_products
-from tol3d.study.blocks import block_trials
-from tol3d.study.draws import drawn, drawn_ones
-from tol3d.study.regression import target_sums
-from tol3d.study.regressors import regressor_set
-from tol3d.study.simulation import Simulation
-from tol3d.study.study import Study
-from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.study.task import Task, task_of
-from tol3d.study.versions import installed_versions
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, METHODS
+from tol3d.statistics.estimates import IndependentSums, independent_shares
+from tol3d.statistics.estimates.variance_shares import plain_products
+from tol3d.statistics.samplers.replicates import SamplerKind
+from tol3d.study.effects.regressors import regressor_set
+from tol3d.study.results.task import Task, block_trials, task_of
+from tol3d.study.results.versions import installed_versions
+from tol3d.study.runs.checkpoint import Checkpoint
+from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC, METHODS
+from tol3d.study.tallies.regression import target_sums
+from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.study.trials.draws import drawn, drawn_ones
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Study
 
 HEAD = """scene: many
 parts:

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d.scene import Scene
-from tol3d.scene.measure import MeasureEntry
+from tol3d.scene.bases import MeasureEntry
 from tol3d.simulate import load, simulation_of
-from tol3d.study.draws import drawn
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 

@@ -28,16 +28,16 @@ from toys.parabola.system import KNOTS_TO, ParabolaSystem
 from toys.registered import TOYS, known, offered
 
 from tol3d import Overrides, Run, SceneError, load_scene, open_run, run_scene
-from tol3d.execution.pools import Execution
 from tol3d.report.table import Detail, run_report
-from tol3d.runs.summary.kinds import default_kinds
-from tol3d.runs.summary.sample import SpectrumSample
-from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Watch, replay, simulation_of
-from tol3d.study import blocks, replaying
-from tol3d.study import task as task_module
-from tol3d.system.method import Answers
-from tol3d.system.trials import Trials
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results import replaying, task
+from tol3d.study.results import task as task_module
+from tol3d.study.runs.summary.kinds import default_kinds
+from tol3d.study.runs.summary.sample import SpectrumSample
+from tol3d.study.runs.worst import worst_trial
+from tol3d.study.system.method import Answers
+from tol3d.study.system.trials import Trials
 
 SPRING = TOYS / "parabola" / "spring.yaml"
 TRIALS = 60_000
@@ -71,7 +71,7 @@ def run(springs: None, tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 @pytest.fixture
 def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(blocks, "BLOCK_TRIALS", 1000)
+    monkeypatch.setattr(task, "BLOCK_TRIALS", 1000)
 
 
 def found(run: Run, name: str, method: str = "geometric") -> Mapping[str, Any]:
@@ -344,7 +344,7 @@ def test_automatic_trials_stop_at_the_error_that_was_asked_for(tmp_path: Path) -
     own = found(run, "height")
     assert own["mean_se"] <= 0.2
     assert own["sigma_se"] <= 0.3
-    assert run.trials == blocks.AUTO_BLOCK_TRIALS * math.ceil((EXACT.sigma / 0.2) ** 2 / blocks.AUTO_BLOCK_TRIALS)
+    assert run.trials == task.AUTO_BLOCK_TRIALS * math.ceil((EXACT.sigma / 0.2) ** 2 / task.AUTO_BLOCK_TRIALS)
 
 
 # bits ---------------------------------------------------------------------------------------------
@@ -369,7 +369,7 @@ def test_bits_are_those_of_any_blocks_workers_and_resume(tmp_path: Path, monkeyp
     resumed = run_scene(SPRING, overrides=FEW, out=tmp_path / "cut", execution=Execution(resume=True))
     assert 0 < resumed.summary["timing"]["resumed_trials"] < 7700
     assert_bits(first, resumed)
-    monkeypatch.setattr(blocks, "BLOCK_TRIALS", 4096)
+    monkeypatch.setattr(task, "BLOCK_TRIALS", 4096)
     other = run_scene(SPRING, overrides=FEW, out=tmp_path / "other")
     for name, column in first.columns().items():
         assert np.array_equal(column, other.columns(name)[name], equal_nan=column.dtype.kind == "f"), name

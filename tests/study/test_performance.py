@@ -12,17 +12,17 @@ from scipy import stats
 
 from tol3d import load_scene
 from tol3d.report.verdict import verdict_table
-from tol3d.runs.summary.judged import AcceptedPpk, JudgedMeasure
-from tol3d.runs.summary.sample import Sample as SampleSummary
-from tol3d.runs.summary.values import as_json
-from tol3d.statistics import Grid, Moments
-from tol3d.statistics.moments import kurtosis_se, skewness_se
-from tol3d.study.overrides import simulation_of
-from tol3d.study.performance import FEWEST, Side
-from tol3d.study.sample import Sample, sample_summary
-from tol3d.study.study import PpkBy
-from tol3d.system.outcome import Outcome
-from tol3d.system.plain import PlainMeasure
+from tol3d.statistics.estimates import Grid, Moments
+from tol3d.statistics.estimates.moments import kurtosis_se, skewness_se
+from tol3d.study.runs.summary.judged import AcceptedPpk, JudgedMeasure
+from tol3d.study.runs.summary.sample import Sample as SampleSummary
+from tol3d.study.runs.summary.values import as_json
+from tol3d.study.system.outcome import Outcome
+from tol3d.study.system.plain import PlainMeasure
+from tol3d.study.tallies.performance import FEWEST, Side
+from tol3d.study.tallies.sample import Sample, sample_summary
+from tol3d.study.trials.overrides import simulation_of
+from tol3d.study.trials.study import PpkBy
 
 MM = 1e-3  # one um, as limits are stated
 LOW, MIDDLE, HIGH = 0.00135, 0.5, 0.99865

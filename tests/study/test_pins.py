@@ -15,12 +15,12 @@ from toys.pins.system import STEEPEST
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, Run, SceneError, replay, run_scene
-from tol3d.execution.pools import Execution
 from tol3d.report.heading import worst_words
 from tol3d.report.table import run_report
-from tol3d.runs.worst import worst_trial
-from tol3d.study import blocks
-from tol3d.system.statuses import Statuses
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results import task
+from tol3d.study.runs.worst import worst_trial
+from tol3d.study.system.outcome import Statuses
 
 SCENE = TOYS / "pins" / "pins.yaml"
 TRIALS = 40_000
@@ -123,7 +123,7 @@ def test_tables_call_failures_by_the_mechanism_s_own_words(run: Run) -> None:
 def test_a_trial_is_replayed_and_bits_do_not_depend_on_workers_or_blocks(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(blocks, "BLOCK_TRIALS", 3000)
+    monkeypatch.setattr(task, "BLOCK_TRIALS", 3000)
     several = run_scene(SCENE, overrides=Overrides(trials=TRIALS), out=tmp_path / "run", execution=Execution(workers=2))
     for name in ("geometric:least gap", "analytic:slide", "nearest pin", "pins.17 [um]"):
         assert np.array_equal(run.columns(name)[name], several.columns(name)[name])

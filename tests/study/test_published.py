@@ -26,12 +26,12 @@ from tol3d.report.measure_charts import histogram
 from tol3d.report.measure_table import curve_table
 from tol3d.report.published import published_notes
 from tol3d.report.table import run_report
-from tol3d.runs.summary.kinds import default_kinds
-from tol3d.runs.summary.measure import PublishedColumn
-from tol3d.runs.summary.sample import Sample
 from tol3d.scene import scene_from_python
 from tol3d.scene.published import PublishedMeasure
 from tol3d.simulate import Overrides, run_scene
+from tol3d.study.runs.summary.kinds import default_kinds
+from tol3d.study.runs.summary.measure import PublishedColumn
+from tol3d.study.runs.summary.sample import Sample
 
 COS, SIN = math.cos(math.radians(20)), math.sin(math.radians(20))
 JUST_RUN = Overrides(trials=20, engine="analytic")

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from tol3d.runs.summary.sample import Sample as SampleSummary
-from tol3d.runs.summary.values import as_json
-from tol3d.statistics import Grid
-from tol3d.study.sample import Sample, sample_summary
-from tol3d.system.outcome import Outcome
-from tol3d.system.plain import PlainMeasure
-from tol3d.system.pooled_statistic import HalfSpan
+from tol3d.statistics.estimates import Grid
+from tol3d.study.runs.summary.sample import Sample as SampleSummary
+from tol3d.study.runs.summary.values import as_json
+from tol3d.study.system.outcome import Outcome
+from tol3d.study.system.plain import PlainMeasure
+from tol3d.study.system.pooled import HalfSpan
+from tol3d.study.tallies.sample import Sample, sample_summary
 
 TRIALS = 100_000
 BIN = 1e-3

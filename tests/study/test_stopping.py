@@ -11,17 +11,17 @@ from gear_trials import simulated
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.distributions.constant import Constant
 from tol3d.gearing.model import Model, Scalar
 from tol3d.gearing.stack_up import closed_form
 from tol3d.simulate import simulation_of
-from tol3d.study.columns import columns_of as system_columns
-from tol3d.study.draws import drawn
-from tol3d.study.simulation import Simulation
-from tol3d.study.stopping import enough, shortfalls
-from tol3d.study.study import Until
-from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.system.outcome import Columns
+from tol3d.statistics.distributions.constant import Constant
+from tol3d.study.results.stopping import enough, shortfalls
+from tol3d.study.system.outcome import Columns
+from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
+from tol3d.study.trials.columns import columns_of as system_columns
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.simulation import Simulation
+from tol3d.study.trials.study import Until
 
 BLOCK = 2048
 NAME = "normal backlash"

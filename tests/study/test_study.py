@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tol3d import Overrides, Run, Scene, SceneError, run_scene
-from tol3d.runs.worst import worst_trial
 from tol3d.simulate import load, simulation_of
-from tol3d.study.blocks import BLOCK_VALUES, block_trials
+from tol3d.study.results.task import BLOCK_VALUES, block_trials
+from tol3d.study.runs.worst import worst_trial
 
 FEW = Overrides(trials=200, engine="analytic")
 

@@ -7,8 +7,8 @@ import pytest
 from gear_trials import drawn_trials, gear_columns, simulated
 
 from tol3d.gearing.model import Model
-from tol3d.study.tally import Tally, grids_of
-from tol3d.system.outcome import Columns
+from tol3d.study.system.outcome import Columns
+from tol3d.study.tallies.tally import Tally, grids_of
 
 NAME = "normal backlash"
 CUTS = (0, 150, 400, 450, 600)  # where blocks begin, and their end

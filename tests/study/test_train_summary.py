@@ -15,8 +15,8 @@ from tol3d.errors import SceneError
 from tol3d.gearing.model import LostMotion, model_from_scene
 from tol3d.gearing.presenting.shown_stage import distributions_of, sums_of, trains_of
 from tol3d.gearing.presenting.train_tables import sums_table
-from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Overrides, run_scene
+from tol3d.study.runs.worst import worst_trial
 
 SPLIT = SCENES / "split_train.yaml"
 LEVER = 200.0  # mm

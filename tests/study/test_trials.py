@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tol3d.samplers.monte_carlo import stream_key, uniforms
+from tol3d.statistics.samplers.monte_carlo import stream_key, uniforms
 
 TRIALS = 20_000
 

@@ -13,12 +13,12 @@ from loose_summaries import typed_run
 from places import SCENES, SPUR_PAIR
 
 from tol3d import Overrides, Run, run_scene
-from tol3d.execution.pools import Execution
-from tol3d.runs.summary.agreement import WitnessSummary
 from tol3d.simulate import load, simulation_of
-from tol3d.study.simulation import Simulation
-from tol3d.study.witness import witness_summary, witness_warnings, witnessed_trials
-from tol3d.system.method import Method
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results.witness import witness_summary, witness_warnings, witnessed_trials
+from tol3d.study.runs.summary.agreement import WitnessSummary
+from tol3d.study.system.method import Method
+from tol3d.study.trials.simulation import Simulation
 
 EVERY_FIELD = SCENES / "every_field.yaml"
 MEASURES = ("normal backlash", "lost motion")

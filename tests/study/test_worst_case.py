@@ -7,9 +7,9 @@ import pytest
 from assembly_trials import assembled
 from numpy.typing import NDArray
 
-from tol3d.study.draws import drawn
-from tol3d.study.regions import Codes, Drawing, Rows, Space, Standing, builds_in, random_ends, settled
-from tol3d.study.worst_case import Starts, first_starts, joined, worst_case
+from tol3d.study.effects.regions import Codes, Drawing, Rows, Space, Standing, builds_in, random_ends, settled
+from tol3d.study.effects.worst_case import Starts, first_starts, joined, worst_case
+from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
 Build = Mapping[str, Array]

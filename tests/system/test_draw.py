@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tol3d.distributions import Distribution
-from tol3d.distributions.constant import Constant
-from tol3d.distributions.normal import Normal
-from tol3d.distributions.rayleigh import Rayleigh
-from tol3d.system.draw import Ball, Draw, Each, Planar, Scalar
+from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.constant import Constant
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.statistics.distributions.rayleigh import Rayleigh
+from tol3d.study.system.draw import Ball, Draw, Each, Planar, Scalar
 
 Array = NDArray[np.float64]
 

@@ -15,20 +15,20 @@ from thinned import thinned
 import tol3d
 from tol3d import kinds
 from tol3d.errors import InputError, MechanismError, SceneError
-from tol3d.execution.pools import Execution
-from tol3d.system.faults import Origin, UnfitError, faults_of
+from tol3d.study.execution.pools import Execution
+from tol3d.study.system.faults import Origin, UnfitError, faults_of
 
 MODULE = """
 from dataclasses import dataclass
 from typing import ClassVar, Literal
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.bases import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.part import PartSpec
-from tol3d.scene.reference import Reference
-from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.system.mechanism import Mechanism
-from tol3d.system.plain import LengthSpec, PlainSystem, contributors_of, measures_of
-from tol3d.system.method import MethodKind
+from tol3d.scene.bases import PartSpec
+from tol3d.scene.entry import Reference
+from tol3d.scene.bases import ToleranceSpec
+from tol3d.study.system.mechanism import Mechanism
+from tol3d.study.system.plain import LengthSpec, PlainSystem, contributors_of, measures_of
+from tol3d.study.system.method import MethodKind
 
 class BlockSpec(PartSpec):
     words: ClassVar = "a block"
@@ -88,21 +88,25 @@ FAULTS = {
     "no such module": ('"broken_blocks:', '"broken_blocks.away:', "ModuleNotFoundError: No module named 'broken"),
     "its function fails": (MAKING, "(part,) = ()", "ValueError: not enough values to unpack"),
     "it misuses what tol3d offers": ("contributors_of(scene, {})", "contributors_of(scene, None)", "AttributeError: "),
-    "nothing is made": (MAKING, "pass", "expected a tol3d.system.system.System, got NoneType without name, contributo"),
+    "nothing is made": (
+        MAKING,
+        "pass",
+        "expected a tol3d.study.system.system.System, got NoneType without name, contributo",
+    ),
     "an attribute is missing": (
         MAKING,
         "class Half: name, measures, contributors = 'half', (), ()\n    return Half()",
-        "expected a tol3d.system.system.System, got Half without statuses, breakdowns, warnings, problems, describe",
+        "expected a tol3d.study.system.system.System, got Half without statuses, breakdowns, warnings, problems, describe",
     ),
     "a measure is none": (
         "measures_of(scene))",
         "(3,))",
-        "expected a tol3d.system.measure.Measure, got int without name, positions, take, lower_limit",
+        "expected a tol3d.study.system.measure.Measure, got int without name, positions, take, lower_limit",
     ),
     "a contributor is none": (
         "contributors_of(scene, {})",
         "('height',)",
-        "expected a tol3d.system.contributor.Contributor, got str without name, kind",
+        "expected a tol3d.study.system.contributor.Contributor, got str without name, kind",
     ),
     "the analytic method fails": (ANALYTIC, "def analytic(self, *_): return {}['lost']", "KeyError: 'lost'"),
     "the exact method fails": (EXACT, "def exact(self, *_): return 1 / 0", "ZeroDivisionError: division by zero"),
@@ -163,7 +167,7 @@ def test_a_fault_is_the_mechanisms_and_not_the_users(registered: Broken, tol3d: 
     first, second, *lines = (line for line in err.splitlines() if line)  # one is empty where a progress bar was
     assert first.replace("broken_blocks.away", "broken_blocks").startswith(SURELY + words)
     assert second == "please report it to its authors with the scene and these lines:"
-    assert lines[-1].startswith(("tol3d.system.faults.UnfitError: ", words.partition(":")[0]))
+    assert lines[-1].startswith(("tol3d.study.system.faults.UnfitError: ", words.partition(":")[0]))
 
 
 @pytest.mark.parametrize("command", ["run", "check"])

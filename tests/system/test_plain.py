@@ -6,15 +6,12 @@ import numpy as np
 import pytest
 
 from tol3d.scene import Grammar, Scene
-from tol3d.scene.measure import AngleLimit, MeasureSpec
-from tol3d.scene.move import MoveSpec
-from tol3d.scene.part import PartSpec
-from tol3d.scene.reference import Reference
-from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.system.draw import Planar
-from tol3d.system.mechanism import Mechanism
-from tol3d.system.plain import LengthSpec, PlainSystem, contributors_of, measures_of
-from tol3d.system.stated import nominal_build, stated
+from tol3d.scene.bases import AngleLimit, MeasureSpec, MoveSpec, PartSpec, ToleranceSpec
+from tol3d.scene.entry import Reference
+from tol3d.study.system.draw import Planar
+from tol3d.study.system.mechanism import Mechanism
+from tol3d.study.system.plain import LengthSpec, PlainSystem, contributors_of, measures_of
+from tol3d.study.system.trials import nominal_build, stated
 from tol3d.units import Dimension
 
 

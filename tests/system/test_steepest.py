@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tol3d.distributions.uniform import Uniform
-from tol3d.system.draw import Each
-from tol3d.system.steepest import along, steepest_ends
+from tol3d.statistics.distributions.uniform import Uniform
+from tol3d.study.system.draw import Each
+from tol3d.study.system.steepest import along, steepest_ends
 
 Array = NDArray[np.float64]
 

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from tol3d.distributions import DeviationLaw
-from tol3d.system.contributor import column_names
-from tol3d.system.draw import Draw
+from tol3d.statistics.distributions import DeviationLaw
+from tol3d.study.system.contributor import column_names
+from tol3d.study.system.draw import Draw
 
 
 @dataclass(frozen=True)

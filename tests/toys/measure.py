@@ -2,10 +2,9 @@
 
 from dataclasses import dataclass
 
-from tol3d.system.measure import Worse
-from tol3d.system.pooled_statistic import PooledStatistic
-from tol3d.system.positions import Positions, Take
-from tol3d.system.spectrum import Spectrum
+from tol3d.study.system.measure import Worse
+from tol3d.study.system.pooled import PooledStatistic, Spectrum
+from tol3d.study.system.positions import Positions, Take
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from places import TESTS
 
 import tol3d
 from tol3d import kinds
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 
 TOYS = TESTS / "toys"
 

@@ -13,12 +13,12 @@ from tol3d.assembly.placing.placer import ALL_OK, Placer
 from tol3d.assembly.placing.poses import Codes, Pose, column
 from tol3d.assembly.placing.world import World as PlacedWorld
 from tol3d.assembly.torsors.world import World as TorsorWorld
-from tol3d.distributions import StatedDistribution
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
-from tol3d.system.draw import Scalar
-from tol3d.system.mechanism import Mechanism
-from tol3d.system.plain import PlainContributor
+from tol3d.statistics.distributions import StatedDistribution
+from tol3d.study.system.draw import Scalar
+from tol3d.study.system.mechanism import Mechanism
+from tol3d.study.system.plain import PlainContributor
 
 ACTS = Acts("shim", "shimmed on", f"{__name__}:shimming", f"{__name__}:displaced")
 

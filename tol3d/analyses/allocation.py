@@ -24,7 +24,7 @@ from tol3d.analyses.stated_changes import told
 from tol3d.analyses.tolerance_search import MOST_PPM, TINY, Question, Search, Target, begun, with_sides
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.values import made
+from tol3d.study.runs.summary.values import made
 
 ROUNDS: Final = 8
 TRIMS: Final = 8

@@ -11,21 +11,22 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
-from tol3d.analyses.allocated_scene import allocated_scene, groups_of
 from tol3d.analyses.allocation import allocation
-from tol3d.analyses.allocation_section import Allocation
+from tol3d.analyses.allocation_section import Allocation, allocated_scene, groups_of
 from tol3d.analyses.asked_allocation import bounds_of, named_bounds, stays_of, targets_of
 from tol3d.analyses.before_after import WhatIf
 from tol3d.analyses.before_after import what_if as found_before_after
 from tol3d.analyses.changes_of_run import not_ok
 from tol3d.analyses.costs import Costs, costs_from
-from tol3d.analyses.effects_table import whole_table as effects_table
 from tol3d.analyses.kept_pages import charts_of, page_of
 from tol3d.analyses.methods_section import Methods
-from tol3d.analyses.methods_table import intervals_table
 from tol3d.analyses.rare_events import Method, RareEvent, limits_left
 from tol3d.analyses.rare_section import RareEvents, rare_section
 from tol3d.analyses.response import Response
+from tol3d.analyses.shown_changes import contributions_table
+from tol3d.analyses.shown_effects import whole_table as effects_table
+from tol3d.analyses.shown_methods import intervals_table
+from tol3d.analyses.shown_what_if import what_if_table
 from tol3d.analyses.side_by_side import methods as found_side_by_side
 from tol3d.analyses.side_by_side import trials_of
 from tol3d.analyses.stated_changes import change_of, changed, factor_of, slips
@@ -37,26 +38,24 @@ from tol3d.analyses.tolerance_search import Question
 from tol3d.analyses.variant_sweep import Order, Sweep, SweepQuestion
 from tol3d.analyses.variant_sweep import sweep as swept
 from tol3d.analyses.variants import variable
-from tol3d.analyses.what_if_table import what_if_table
 from tol3d.analyses.what_to_change import AIM, Changes, ChangesQuestion, changes_of, contributions_of
-from tol3d.analyses.what_to_change_table import contributions_table
 from tol3d.errors import InputError
 from tol3d.import_path import named
 from tol3d.report.chart import Charts
 from tol3d.report.page import Page, Table
 from tol3d.report.printed import Picture, Report, stacked
-from tol3d.runs.run import Run
-from tol3d.runs.summary.judged import ACCEPTED_PPM, Accepted, AcceptedPpk
-from tol3d.runs.summary.values import Section
 from tol3d.scene import Scene
 from tol3d.simulate import load
-from tol3d.study.overrides import AS_WRITTEN, Overrides
-from tol3d.system.faults import faults_of
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.summary.judged import ACCEPTED_PPM, Accepted, AcceptedPpk
+from tol3d.study.runs.summary.values import Section
+from tol3d.study.system.faults import faults_of
+from tol3d.study.trials.overrides import AS_WRITTEN, Overrides
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from tol3d.runs.frame import DataFrame
+    from tol3d.study.runs.frame import DataFrame
 
 Found = TypeVar("Found", bound=Section)
 Asked = Scene | Run | Path | str

@@ -7,9 +7,9 @@ from tol3d.analyses.before_after import limits_of
 from tol3d.analyses.limit_state import Side
 from tol3d.analyses.response import Response
 from tol3d.analyses.tolerance_search import Target
-from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
-from tol3d.statistics.limits import MOST_PPK
+from tol3d.statistics.distributions.base import Stays
+from tol3d.statistics.estimates.limits import MOST_PPK
 
 DEFAULT_PPK = 1.33
 

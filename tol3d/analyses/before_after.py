@@ -23,10 +23,12 @@ from tol3d.analyses.results import results_of
 from tol3d.analyses.stated_changes import Change, changed, known, told
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.judged import JudgedMeasure, demand_of
-from tol3d.runs.summary.sample import Sample
-from tol3d.runs.summary.shows import Shows
-from tol3d.runs.summary.values import (
+from tol3d.statistics.estimates.limits import CONFIDENCE, Proportion
+from tol3d.study.effects.acting_contributors import looked_at
+from tol3d.study.runs.summary.judged import JudgedMeasure, demand_of
+from tol3d.study.runs.summary.sample import Sample
+from tol3d.study.runs.summary.shows import Shows
+from tol3d.study.runs.summary.values import (
     LEFT_OUT,
     Count,
     Known,
@@ -40,10 +42,8 @@ from tol3d.runs.summary.values import (
     Section,
     made,
 )
-from tol3d.statistics.limits import CONFIDENCE, Proportion
-from tol3d.study.acting import looked_at
-from tol3d.system.dependent import reads_of
-from tol3d.system.measure import Measure
+from tol3d.study.system.dependent import reads_of
+from tol3d.study.system.measure import Measure
 
 PLACES: Final = 16
 STARTS: Final = 2

@@ -25,7 +25,7 @@ from tol3d.analyses.pick_freeze import PickFreeze
 from tol3d.analyses.response import Response
 from tol3d.analyses.shapley import ShapleyEffects
 from tol3d.numerics.arrays import Array
-from tol3d.statistics.shapley import linear_shapley
+from tol3d.statistics.estimates.shapley import linear_shapley
 
 BlameBy = Literal["simulation", "design points"]
 Valued = tuple[float, float]

@@ -11,11 +11,11 @@ from tol3d.analyses.compared_builds import limits_of
 from tol3d.analyses.response import response_of
 from tol3d.analyses.what_to_change import AIM, Changes, ChangesQuestion, Effort, changes_of
 from tol3d.report.heading import badness
-from tol3d.runs.run import Run
-from tol3d.runs.summary.judged import Accepted, AcceptedPpk, JudgedMeasure, demand_of
-from tol3d.runs.summary.values import made
-from tol3d.study.simulation import Simulation
-from tol3d.system.method import ANALYTIC_METHOD
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.summary.judged import Accepted, AcceptedPpk, JudgedMeasure, demand_of
+from tol3d.study.runs.summary.values import made
+from tol3d.study.system.method import ANALYTIC_METHOD
+from tol3d.study.trials.simulation import Simulation
 
 MOST_MEASURES: Final = 3
 MOST_BUILDS: Final = 1000

@@ -1,17 +1,22 @@
-"""Builds before and after a change, of the same uniforms: spread of a measure, and a verdict on the change."""
+"""Builds before and after a change, of the same uniforms: spread of a measure, and a verdict on the change.
+
+Builds as a study draws them, as many as an analysis takes.
+"""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 
+from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
-from tol3d.statistics import LimitCounts, Moments
-from tol3d.study.performance import FEWEST, Judged, Performance, Side
-from tol3d.study.study import PpkBy
-from tol3d.system.measure import Measure
+from tol3d.statistics.estimates import LimitCounts, Moments
+from tol3d.study.system.measure import Measure
+from tol3d.study.tallies.performance import FEWEST, Judged, Performance, Side
+from tol3d.study.trials.study import PpkBy
 
 SURE: Final = 3.0
 """Standard errors beyond which a change is taken for one."""
@@ -95,3 +100,12 @@ class Compared:
 
 
 ENDS: Final = (-math.inf, math.inf)
+
+
+def drawn_builds(response: Response, count: int) -> tuple[Array, Mapping[str, Array]]:
+    """So many builds as the study draws them, deviations and positions, by independent draws whatever its sampler."""
+    study = response.simulation.study
+    if study.sampler != "monte_carlo":
+        simulation = replace(response.simulation, study=replace(study, sampler="monte_carlo", replicates=1))
+        response = replace(response, simulation=simulation)
+    return response.drawn(count)

@@ -16,7 +16,7 @@ from scipy import stats
 
 from tol3d.analyses.methods_section import FittedLaw
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.values import made
+from tol3d.study.runs.summary.values import made
 
 MOST: Final = 2000
 """Trials that are fitted and tested: of more, A² rejects every law that is not the true one."""

@@ -22,7 +22,7 @@ from tol3d.analyses.limit_state import LimitState, Positions, Side
 from tol3d.analyses.places import FEWEST_PLACES, FEWEST_STARTS, affordable
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
-from tol3d.system.dependent import Dependent
+from tol3d.study.system.dependent import Dependent
 
 PLACES: Final = 16
 STARTS: Final = 2

@@ -13,8 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.analyses.estimate import Estimate, counted, effective, weighted_interval
-from tol3d.analyses.limit_state import LimitState, taken
+from tol3d.analyses.limit_state import Estimate, LimitState, counted, effective, taken, weighted_interval
 from tol3d.analyses.mixture import AROUND, Mixture, Shape
 from tol3d.analyses.places import SCREENED, Places, shaped, with_more
 from tol3d.numerics.arrays import Array

@@ -20,7 +20,7 @@ import numpy as np
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.cache_folder import cache_folder, read_entry, write_entry
-from tol3d.runs.fingerprint import Fingerprint
+from tol3d.study.runs.manifest import Fingerprint
 
 LONG: Final = 0.2
 """Seconds of an evaluation from which it is kept."""

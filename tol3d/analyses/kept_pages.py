@@ -7,12 +7,12 @@ from tol3d.analyses.subject import KEPT, sections_of
 from tol3d.import_path import named
 from tol3d.report.chart import Charts
 from tol3d.report.page import Page
-from tol3d.runs.run import Run
-from tol3d.runs.summary.values import Section
 from tol3d.simulate import simulation_again
-from tol3d.system.contributor import Contributor
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.summary.values import Section
+from tol3d.study.system.contributor import Contributor
 
-BEST_CHANGE: Final = "tol3d.analyses.what_to_change_table:best_change"
+BEST_CHANGE: Final = "tol3d.analyses.shown_changes:best_change"
 
 
 def kept_pages(run: Run) -> Mapping[str, Page]:

@@ -4,7 +4,17 @@ from collections.abc import Mapping
 
 from pydantic import Field
 
-from tol3d.runs.summary.values import Count, Known, Label, MethodSection, NotNegative, Number, Section, Sentence, Unit
+from tol3d.study.runs.summary.values import (
+    Count,
+    Known,
+    Label,
+    MethodSection,
+    NotNegative,
+    Number,
+    Section,
+    Sentence,
+    Unit,
+)
 
 
 class BuildFound(Section):

@@ -16,7 +16,7 @@ import numpy as np
 from tol3d.analyses.response import Response
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.study.draws import KeptDraws
+from tol3d.study.trials.draws import KeptDraws
 
 CHECKED: Final = 200
 """Builds of the check."""

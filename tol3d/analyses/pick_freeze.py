@@ -23,9 +23,9 @@ from scipy.special import ndtri
 
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
-from tol3d.samplers import Sobol, Stream
-from tol3d.system.dependent import reads_of
-from tol3d.system.normals import LEAST, MOST
+from tol3d.statistics.samplers import Sobol, Stream
+from tol3d.study.system.dependent import reads_of
+from tol3d.study.system.normals import LEAST, MOST
 
 MOST_EVEN: Final = 4096
 """Dimensions up to which points are Sobol's; beyond them they are random."""

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from tol3d.analyses.design_points import AT_ORIGIN, DesignPoint, design_points, kept, points_from, probed
-from tol3d.analyses.estimate import effective
-from tol3d.analyses.limit_state import LimitState, Positions, taken
+from tol3d.analyses.limit_state import LimitState, Positions, effective, taken
 from tol3d.analyses.mixture import Shape
 from tol3d.numerics.arrays import Array
 

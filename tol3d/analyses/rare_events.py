@@ -14,9 +14,8 @@ from typing import Final, Literal, get_args
 import numpy as np
 
 from tol3d.analyses.design_points import DesignPoint
-from tol3d.analyses.estimate import Estimate
 from tol3d.analyses.importance import importance_sampled
-from tol3d.analyses.limit_state import LimitState, Side
+from tol3d.analyses.limit_state import Estimate, LimitState, Side
 from tol3d.analyses.places import searched
 from tol3d.analyses.response import Response
 from tol3d.analyses.second_order import SecondOrder, second_order

@@ -12,9 +12,9 @@ from tol3d.analyses.limit_state import Side
 from tol3d.analyses.rare_events import Method, RareEvent
 from tol3d.analyses.response import Response
 from tol3d.report.number import limit_text
-from tol3d.runs.summary.shows import Shows, shown
-from tol3d.runs.summary.values import Count, Known, Label, Number, Numbers, Ppm, PpmRange, Section, Sentence, made
-from tol3d.system.trials import Trials
+from tol3d.study.runs.summary.shows import Shows, shown
+from tol3d.study.runs.summary.values import Count, Known, Label, Number, Numbers, Ppm, PpmRange, Section, Sentence, made
+from tol3d.study.system.trials import Trials
 
 
 class WayThere(Section):

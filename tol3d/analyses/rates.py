@@ -7,8 +7,8 @@ import numpy as np
 
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
-from tol3d.study.correlated import value_correlations
-from tol3d.system.draw import Draw, JointDraw, component_sigmas
+from tol3d.study.system.draw import Draw, JointDraw, component_sigmas
+from tol3d.study.trials.correlated import value_correlations
 
 PLACES: Final = 16
 """Positions at which slopes are taken."""

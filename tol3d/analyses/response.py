@@ -16,37 +16,35 @@ from numpy.typing import NDArray
 from tol3d.analyses.kept_batches import KeptBatches
 from tol3d.analyses.pace import Pace
 from tol3d.analyses.scope import Scope, scope_of
-from tol3d.distributions import Distribution
-from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.runs.frame import frame_of
 from tol3d.scene.nearest import hint
-from tol3d.study.acting import acting, nothing_acts
-from tol3d.study.columns import drawn_columns
-from tol3d.study.curve_tally import ENDS, HIGHEST, LOWEST
-from tol3d.study.draws import KeptDraws, fill, kept_draws
-from tol3d.study.evaluation import BATCH, Evaluation
-from tol3d.study.high_low_mean import ranges
-from tol3d.study.simulation import Simulation
-from tol3d.study.task import materials_of, method_of
-from tol3d.system.contributor import Contributor
-from tol3d.system.copula import Copula
-from tol3d.system.dependent import Dependent, DrawnAs, in_draw_order
-from tol3d.system.draw import Draw
-from tol3d.system.measure import Measure
-from tol3d.system.method import ANALYTIC_METHOD, Method
-from tol3d.system.normals import groups_of, normal_count, uniforms_of
-from tol3d.system.other_laws import Following, Zoned, refuse_held, refuse_impossible, with_law
-from tol3d.system.other_laws import scaled as scaled_draw
-from tol3d.system.other_laws import shifted as shifted_draw
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, status_column, value_column
-from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
-from tol3d.system.statuses import OK
-from tol3d.system.trials import Trials
+from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.base import Stays
+from tol3d.study.effects.acting_contributors import acting, nothing_acts
+from tol3d.study.effects.high_low_mean import ranges
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.runs.frame import frame_of
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.copula import Copula
+from tol3d.study.system.dependent import Dependent, DrawnAs, in_draw_order
+from tol3d.study.system.draw import Draw
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.method import ANALYTIC_METHOD, Method
+from tol3d.study.system.normals import groups_of, normal_count, uniforms_of
+from tol3d.study.system.other_laws import Following, Zoned, refuse_held, refuse_impossible, with_law
+from tol3d.study.system.other_laws import scaled as scaled_draw
+from tol3d.study.system.other_laws import shifted as shifted_draw
+from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC, OK, status_column, value_column
+from tol3d.study.system.trials import Trials, component_count, component_slices, mean_deviations, stated
+from tol3d.study.tallies.curve_tally import ENDS, HIGHEST, LOWEST
+from tol3d.study.trials.columns import drawn_columns
+from tol3d.study.trials.draws import KeptDraws, fill, kept_draws
+from tol3d.study.trials.evaluation import BATCH, Evaluation
+from tol3d.study.trials.simulation import Simulation
 
 if TYPE_CHECKING:
-    from tol3d.runs.frame import DataFrame
+    from tol3d.study.runs.frame import DataFrame
 
 T = TypeVar("T")
 Codes = NDArray[np.int8]
@@ -171,7 +169,7 @@ class Response:
         return self.curves.get(measure.name, measure)
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
-        """Contributors that act on one of the measures; see study/acting.py."""
+        """Contributors that act on one of the measures; see study/effects/acting_contributors.py."""
         return acting(self.simulation, self.source(measure))
 
     def nothing_acts(self, measure: Measure) -> str:
@@ -417,7 +415,7 @@ class Response:
     def ranges(self, positions: Mapping[str, Array] | None = None) -> Array:
         """Range of each measure over the whole tolerance of each contributor (measures, contributors).
 
-        The others are at their means; NaN where a build cannot be assembled. See study/high_low_mean.py.
+        The others are at their means; NaN where a build cannot be assembled. See study/effects/high_low_mean.py.
 
         Args:
             positions: one of each stream (1,); default at rest.

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 from tol3d.analyses.response import Response, Values
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.sample import Sample as SampleSummary
-from tol3d.study.replicated import rows_of_replicates
-from tol3d.study.sample import Sample, sample_summary
-from tol3d.study.tally import PILOT_TRIALS, grid_of
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of, status_column, value_column
+from tol3d.study.runs.summary.sample import Sample as SampleSummary
+from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC, outcome_of, status_column, value_column
+from tol3d.study.tallies.replicated import rows_of_replicates
+from tol3d.study.tallies.sample import Sample, sample_summary
+from tol3d.study.tallies.tally import PILOT_TRIALS, grid_of
 
 
 def results_of(

@@ -18,7 +18,7 @@ import numpy as np
 
 from tol3d.analyses.pick_freeze import Pairs, asked, errors_of, resampled
 from tol3d.numerics.arrays import Array
-from tol3d.system.copula import Block
+from tol3d.study.system.copula import Block
 
 ORDERS: Final = 64
 """Random orders of contributors, each with its reverse."""

@@ -7,7 +7,7 @@ the sum of their squares, the worst case by slopes their sum. Modified RSS is RS
 it, less where WC is the most that n equal contributors may add up to. Source: Drake, Dimensioning and Tolerancing
 Handbook, 1999, chapter 9.
 
-The worst case is searched for, not known exactly: see study/worst_case.py.
+The worst case is searched for, not known exactly: see study/effects/worst_case.py.
 """
 
 import math
@@ -24,11 +24,7 @@ from tol3d.analyses.methods_section import BuildFound, MeasureMethods, Methods, 
 from tol3d.analyses.response import Response
 from tol3d.analyses.subject import Subject
 from tol3d.numerics.arrays import Array
-from tol3d.runs.run import Run
-from tol3d.runs.summary.values import Unit, made
-from tol3d.study.correlated import value_correlations
-from tol3d.study.draws import drawn_ones
-from tol3d.study.regions import (
+from tol3d.study.effects.regions import (
     Built,
     Codes,
     Space,
@@ -40,8 +36,7 @@ from tol3d.study.regions import (
     space_of,
     within_regions,
 )
-from tol3d.study.simulation import Simulation
-from tol3d.study.worst_case import (
+from tol3d.study.effects.worst_case import (
     SIGMA,
     Starts,
     WorstBuild,
@@ -51,11 +46,16 @@ from tol3d.study.worst_case import (
     joined,
     worst_case,
 )
-from tol3d.study.worst_cases import price
-from tol3d.system.measure import Measure
-from tol3d.system.method import ANALYTIC_METHOD
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, SEATED, value_column
-from tol3d.system.region import region_of
+from tol3d.study.effects.worst_cases import price
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.summary.values import Unit, made
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.method import ANALYTIC_METHOD
+from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC, SEATED, value_column
+from tol3d.study.system.region import region_of
+from tol3d.study.trials.correlated import value_correlations
+from tol3d.study.trials.draws import drawn_ones
+from tol3d.study.trials.simulation import Simulation
 
 MOST_TRIALS: Final = 20_000
 """Trials by default of a scene whose study has more."""

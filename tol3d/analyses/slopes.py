@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
-from tol3d.system.contributor import Contributor, WithNominal
-from tol3d.system.dependent import Dependent
-from tol3d.system.draw import Draw, Each, JointDraw, Scalar, component_sigmas, drawn_each
+from tol3d.study.system.contributor import Contributor, WithNominal
+from tol3d.study.system.dependent import Dependent
+from tol3d.study.system.draw import Draw, Each, JointDraw, Scalar, component_sigmas, drawn_each
 
 AT_ONCE: Final = 2**22
 """Numbers of a batch of builds: rows times components, 32 MB."""

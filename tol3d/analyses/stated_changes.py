@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.analyses.response import Response
-from tol3d.distributions import Distribution
-from tol3d.distributions.drawn import limits_written
 from tol3d.errors import InputError
 from tol3d.scene.nearest import hint
-from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Draw, component_sigmas
-from tol3d.system.other_laws import Zoned
+from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.drawn import limits_written
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.draw import Draw, component_sigmas
+from tol3d.study.system.other_laws import Zoned
 from tol3d.units import UNITS, Quantity, expectation
 
 RANGE: Final = re.compile(r"(?P<low>.*[^.\s])\s*\.\.\s*(?P<high>[^.].*|\.\d.*)")
@@ -24,7 +24,7 @@ class Change:
     """Change of a tolerance.
 
     Args:
-        name: of the line that states it, see study/lines.py; all its contributors change.
+        name: of the line that states it, see study/trials/simulation.py; all its contributors change.
         limits: new limits of their draw [mm, rad or K].
         size: new size of its zone, or of a law stated by one number.
         factor: on its width.

@@ -10,18 +10,18 @@ from typing import Final
 from tol3d.analyses.kept_batches import KeptBatches
 from tol3d.analyses.response import Response, response_of
 from tol3d.errors import RunError, unwritable
-from tol3d.execution.pools import Execution
 from tol3d.import_path import named
 from tol3d.kinds import NEEDED_KINDS
-from tol3d.runs.atomic_write import write_whole
-from tol3d.runs.run import SUMMARY, Run, open_run
-from tol3d.runs.summary.text import parsed
-from tol3d.runs.summary.values import Section, as_json
 from tol3d.scene import Scene, read_scene
 from tol3d.scene.bundled import scene_path
 from tol3d.simulate import load, simulation_again, simulation_of
-from tol3d.study.fingerprint import fingerprint_of
-from tol3d.study.simulation import Simulation
+from tol3d.study.execution.pools import Execution
+from tol3d.study.results.fingerprint import fingerprint_of
+from tol3d.study.runs.atomic_write import write_whole
+from tol3d.study.runs.run import SUMMARY, Run, open_run
+from tol3d.study.runs.summary.text import parsed
+from tol3d.study.runs.summary.values import Section, as_json
+from tol3d.study.trials.simulation import Simulation
 
 PACKAGE: Final = __name__.partition(".")[0]
 FOLDER: Final = "analyses"
@@ -48,32 +48,32 @@ KEPT: Final[Mapping[str, Kept]] = {
     "changes": Kept(
         "what to change",
         "tol3d.analyses.what_to_change:Changes",
-        "tol3d.analyses.what_to_change_table:changes_report",
-        "tol3d.analyses.what_to_change_charts:changes_charts",
+        "tol3d.analyses.shown_changes:changes_report",
+        "tol3d.analyses.shown_changes:changes_charts",
     ),
     "methods": Kept(
         "methods side by side",
         "tol3d.analyses.methods_section:Methods",
-        "tol3d.analyses.methods_table:methods_report",
-        "tol3d.analyses.methods_charts:methods_charts",
+        "tol3d.analyses.shown_methods:methods_report",
+        "tol3d.analyses.shown_methods:methods_charts",
     ),
     "effects": Kept(
         "effects",
         "tol3d.analyses.tolerance_effects:Effects",
-        "tol3d.analyses.effects_table:effects_report",
-        "tol3d.analyses.effects_charts:effects_charts",
+        "tol3d.analyses.shown_effects:effects_report",
+        "tol3d.analyses.shown_effects:effects_charts",
     ),
     "rare": Kept(
         "rare events",
         "tol3d.analyses.rare_section:RareEvents",
-        "tol3d.analyses.rare_table:rare_report",
-        "tol3d.analyses.rare_charts:rare_charts",
+        "tol3d.analyses.shown_rare_events:rare_report",
+        "tol3d.analyses.shown_rare_events:rare_charts",
     ),
     "what-if": Kept(
         "what if",
         "tol3d.analyses.before_after:WhatIf",
-        "tol3d.analyses.what_if_table:what_if_report",
-        "tol3d.analyses.what_if_charts:what_if_charts",
+        "tol3d.analyses.shown_what_if:what_if_report",
+        "tol3d.analyses.shown_what_if:what_if_charts",
     ),
     "allocation": Kept(
         "allocation",

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.design_points import DesignPoint
-from tol3d.analyses.estimate import Estimate, counted, effective, weighted_interval
-from tol3d.analyses.limit_state import LimitState, Positions, at_place
+from tol3d.analyses.limit_state import Estimate, LimitState, Positions, at_place, counted, effective, weighted_interval
 from tol3d.numerics.arrays import Array
 
 SHARE: Final = 0.1

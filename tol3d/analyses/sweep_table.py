@@ -8,7 +8,7 @@ from tol3d.analyses.variant_sweep import Sweep, Variant, VariantMeasure, measure
 from tol3d.report.declared import cells_of, declared_table, headings
 from tol3d.report.number import NOTHING
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
-from tol3d.runs.summary.shows import Shows, shown_by
+from tol3d.study.runs.summary.shows import Shows, shown_by
 
 MOST_ROWS: Final = 60
 MOST_MEASURES: Final = 6

@@ -21,10 +21,10 @@ from tol3d.analyses.response import Response
 from tol3d.analyses.shapley import ShapleyEffects, shapley_effects
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.shows import Shows
-from tol3d.runs.summary.values import Count, Known, Label, MethodSection, Ppm, Section, Sentence, made
-from tol3d.system.measure import Measure
-from tol3d.system.method import ANALYTIC_METHOD
+from tol3d.study.runs.summary.shows import Shows
+from tol3d.study.runs.summary.values import Count, Known, Label, MethodSection, Ppm, Section, Sentence, made
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.method import ANALYTIC_METHOD
 
 PLACES: Final = 16
 """Positions at which changes are averaged."""

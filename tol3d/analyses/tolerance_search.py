@@ -13,10 +13,10 @@ from tol3d.analyses.form import STEP, Points, points_of
 from tol3d.analyses.limit_state import Side, concerned
 from tol3d.analyses.response import Response
 from tol3d.analyses.stated_changes import shared
-from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene.nearest import hint
+from tol3d.statistics.distributions.base import Stays
 
 BOUNDS: Final = (0.5, 3.0)
 BISECTIONS: Final = 40

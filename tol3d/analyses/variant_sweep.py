@@ -15,18 +15,18 @@ from pydantic import Field
 from tol3d.analyses.variants import Number as Value
 from tol3d.analyses.variants import Point, Variable, grid_of, hypercube_of, plain_number
 from tol3d.errors import InputError, RunError, unwritable
-from tol3d.execution.watch import UNWATCHED, Watch
 from tol3d.report.verdict import ends_of
-from tol3d.runs.atomic_write import write_whole
-from tol3d.runs.run import Run
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.shows import Shows
-from tol3d.runs.summary.values import Count, Known, Label, Number, Ppm, PpmRange, Section, Sentence, made
 from tol3d.scene import Scene
 from tol3d.scene.vary import known_path
 from tol3d.simulate import Execution, run_simulation, simulation_of
-from tol3d.study.overrides import AS_WRITTEN, Overrides, asked_study
-from tol3d.system.outcome import SEATED
+from tol3d.study.execution.watch import UNWATCHED, Watch
+from tol3d.study.runs.atomic_write import write_whole
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.shows import Shows
+from tol3d.study.runs.summary.values import Count, Known, Label, Number, Ppm, PpmRange, Section, Sentence, made
+from tol3d.study.system.outcome import SEATED
+from tol3d.study.trials.overrides import AS_WRITTEN, Overrides, asked_study
 
 NAME: Final = "sweep.json"
 

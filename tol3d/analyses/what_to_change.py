@@ -14,21 +14,20 @@ from typing import Annotated, Final
 import numpy as np
 from pydantic import Field
 
-from tol3d.analyses.compared_builds import SURE, Compared, judged, limits_of
-from tol3d.analyses.drawn_builds import drawn_builds
+from tol3d.analyses.compared_builds import SURE, Compared, drawn_builds, judged, limits_of
 from tol3d.analyses.response import Response
 from tol3d.analyses.slopes import BATCHES, Lever, Rates, levers_of, nominal_of, rates_of
 from tol3d.analyses.stated_changes import told
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.number import COUNTED
-from tol3d.runs.summary.judged import ACCEPTED_PPM
-from tol3d.runs.summary.shows import Shows
-from tol3d.runs.summary.values import Count, Known, Label, Number, Positive, Ppm, PpmRange, Section, made
-from tol3d.statistics import LimitCounts
-from tol3d.study.performance import OUTER
-from tol3d.study.sample import finite, listed
-from tol3d.system.measure import Inspecting, Measure
+from tol3d.statistics.estimates import LimitCounts
+from tol3d.study.runs.summary.judged import ACCEPTED_PPM
+from tol3d.study.runs.summary.shows import Shows
+from tol3d.study.runs.summary.values import Count, Known, Label, Number, Positive, Ppm, PpmRange, Section, made
+from tol3d.study.system.measure import Inspecting, Measure
+from tol3d.study.tallies.performance import OUTER
+from tol3d.study.tallies.sample import finite, listed
 
 AIM: Final = 1.33
 """Ppk that a change should reach, where none is asked for."""

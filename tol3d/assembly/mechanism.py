@@ -4,7 +4,13 @@ from typing import Final
 
 from tol3d.assembly.grammar import measures, moves, parts, tolerances
 from tol3d.assembly.grammar.boundary_checks import unfit_boundaries, unfit_modifiers
-from tol3d.assembly.grammar.checks import differences_of_two_poses, unknown_features, unknown_poses, unplaced_bodies
+from tol3d.assembly.grammar.checks import (
+    differences_of_two_poses,
+    general_sizes,
+    unknown_features,
+    unknown_poses,
+    unplaced_bodies,
+)
 from tol3d.assembly.grammar.contact_checks import idle_over_play, idle_rocking, unfit_moves, unfit_pairs
 from tol3d.assembly.grammar.drawing_checks import (
     contradicting_tolerances,
@@ -14,7 +20,6 @@ from tol3d.assembly.grammar.drawing_checks import (
     implausible_leans,
     implausible_sizes,
 )
-from tol3d.assembly.grammar.general import general_sizes
 from tol3d.assembly.grammar.measure_checks import (
     missing_solids,
     mixed_dimensions,
@@ -26,7 +31,7 @@ from tol3d.assembly.grammar.measure_checks import (
 from tol3d.assembly.grammar.orientation_checks import unfit_orientations
 from tol3d.scene.grammar import specs_in
 from tol3d.scene.temperature import TemperatureSpec
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 
 OTHER_KINDS: Final = (
     ("concentricity", "it left ASME Y14.5 in 2018: write coaxiality, of the axis, as in ISO 1101"),

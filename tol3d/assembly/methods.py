@@ -10,9 +10,9 @@ from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.plan import PlacingPlan, planned
 from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.torsors import method as torsors
-from tol3d.system.measure import Measure
-from tol3d.system.method import Answers
-from tol3d.system.trials import Trials
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.method import Answers
+from tol3d.study.system.trials import Trials
 
 
 @dataclass(frozen=True)

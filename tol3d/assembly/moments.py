@@ -7,8 +7,8 @@ import numpy as np
 
 from tol3d.assembly.zones import ZoneDraw
 from tol3d.numerics.arrays import Array
-from tol3d.system.contributor import Contributor
-from tol3d.system.draw import JointDraw
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.draw import JointDraw
 
 MOTIONS: Final = 384
 """Deviations at which the nearest places of parts are sought; half of them twice as wide as trials."""

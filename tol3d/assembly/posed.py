@@ -15,15 +15,15 @@ from tol3d.assembly.model.statuses import OK, WITH_LOOPS
 from tol3d.assembly.system import AssemblySystem, assembly_system, meaning_of
 from tol3d.numerics.kept import kept
 from tol3d.scene import Scene
-from tol3d.system.closed_form import ClosedForm
-from tol3d.system.contributor import Contributor
-from tol3d.system.measure import Measure
-from tol3d.system.method import Answers, Codes, Method, MethodKind
-from tol3d.system.plain import PlainMeasure
-from tol3d.system.positions import Positions
-from tol3d.system.statuses import Statuses
-from tol3d.system.system import Columns, KeyPath
-from tol3d.system.trials import Trials
+from tol3d.study.system.closed_form import ClosedForm
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.method import Answers, Codes, Method, MethodKind
+from tol3d.study.system.outcome import Statuses
+from tol3d.study.system.plain import PlainMeasure
+from tol3d.study.system.positions import Positions
+from tol3d.study.system.system import Columns, KeyPath
+from tol3d.study.system.trials import Trials
 
 Array = NDArray[np.float64]
 

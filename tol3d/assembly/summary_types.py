@@ -4,9 +4,9 @@ from typing import Annotated, Final
 
 from pydantic import Field
 
-from tol3d.runs.summary.kinds import SummaryKinds
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Maybe, NotNegative
+from tol3d.study.runs.summary.kinds import SummaryKinds
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Maybe, NotNegative
 
 PRESENTER: Final = "tol3d.assembly.presenting"
 POSE_ERRORS: Final = ("position_error", "orientation_error", "direction_error")

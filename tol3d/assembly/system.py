@@ -34,15 +34,15 @@ from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import kept
 from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
-from tol3d.system.closed_form import ClosedForm, Share
-from tol3d.system.contributor import Contributor
-from tol3d.system.measure import Measure
-from tol3d.system.method import ANALYTIC_METHOD, Method, MethodKind
-from tol3d.system.plain import PlainSystem
-from tol3d.system.regressors import is_group
-from tol3d.system.stated import component_slices
-from tol3d.system.statuses import Statuses
-from tol3d.system.system import Columns, KeyPath
+from tol3d.study.system.closed_form import ClosedForm, Share
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.method import ANALYTIC_METHOD, Method, MethodKind
+from tol3d.study.system.outcome import Statuses
+from tol3d.study.system.plain import PlainSystem
+from tol3d.study.system.regressors import is_group
+from tol3d.study.system.system import Columns, KeyPath
+from tol3d.study.system.trials import component_slices
 
 T = TypeVar("T")
 Words = NDArray[np.str_]

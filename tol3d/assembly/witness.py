@@ -18,11 +18,11 @@ from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.actual_feature import actual_size
 from tol3d.assembly.placing.surfaces import over
 from tol3d.assembly.witnessed import reads
+from tol3d.cad.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
 from tol3d.numerics.arrays import Array
-from tol3d.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
-from tol3d.system.measure import Measure
-from tol3d.system.method import Answers
-from tol3d.system.trials import Trials
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.method import Answers
+from tol3d.study.system.trials import Trials
 
 CORE: Final = 0.5
 """Fraction of its nominal radius of which a surface is made; so much may overlap."""

@@ -80,7 +80,7 @@ def write_numbers(path: Path, text: str) -> None:
         InputError: it cannot be written.
     """
     from tol3d.errors import unwritable
-    from tol3d.runs.atomic_write import write_whole
+    from tol3d.study.runs.atomic_write import write_whole
 
     try:
         write_whole(path, text.encode())

@@ -13,7 +13,7 @@ import typer
 from tol3d.cli.commands import CommandGroup
 
 if TYPE_CHECKING:
-    from tol3d.runs.summary.judged import Accepted
+    from tol3d.study.runs.summary.judged import Accepted
 
 PPM_PER = {"%": 1e4, "ppm": 1.0}
 WHOLE = re.compile(r"\d{1,19}(\.0*)?([eE]\+?\d{1,2})?")
@@ -101,7 +101,7 @@ def accepted_ppk(text: str | float) -> float:
     >>> accepted_ppk("1.33")
     1.33
     """
-    from tol3d.statistics.limits import MOST_PPK
+    from tol3d.statistics.estimates.limits import MOST_PPK
 
     try:
         ppk = float(text)
@@ -114,7 +114,7 @@ def accepted_ppk(text: str | float) -> float:
 
 def accepted_of(share: float | None, ppk: float | None) -> "Accepted | None":
     """Demand of --accept or --accept-ppk on measures; None if neither is given."""
-    from tol3d.runs.summary.judged import AcceptedPpk
+    from tol3d.study.runs.summary.judged import AcceptedPpk
 
     if share is not None and ppk is not None:
         raise typer.BadParameter("--accept states a share out of limits, --accept-ppk a Ppk; leave out one of them")

@@ -18,7 +18,7 @@ from tol3d.errors import InputError
 from tol3d.import_path import GROUP, REGISTRY, named
 
 if TYPE_CHECKING:
-    from tol3d.system.mechanism import Mechanism
+    from tol3d.study.system.mechanism import Mechanism
 
 SHIPPED: Final = (
     "tol3d.cli.studies:run",
@@ -26,18 +26,18 @@ SHIPPED: Final = (
     "tol3d.apps.drafting.commands:new",
     "tol3d.cli.showing:check",
     "tol3d.cli.step:features",
-    "tol3d.cli.pmi:pmi",
+    "tol3d.cli.step:pmi",
     "tol3d.cli.showing:workspace",
     "tol3d.cli.showing:compare",
     "tol3d.cli.showing:report",
     "tol3d.apps.adjustment.commands:shim",
     "tol3d.apps.adjustment.commands:compensate",
     "tol3d.cli.rare:rare",
-    "tol3d.cli.effects:effects",
-    "tol3d.cli.what_if:what_if",
-    "tol3d.cli.allocate:allocate",
-    "tol3d.cli.changes:changes",
-    "tol3d.cli.methods:methods",
+    "tol3d.cli.analyses:effects",
+    "tol3d.cli.analyses:what_if",
+    "tol3d.cli.analyses:allocate",
+    "tol3d.cli.analyses:changes",
+    "tol3d.cli.analyses:methods",
     "tol3d.cli.sweep:sweep",
     "tol3d.apps.records.commands:identify",
     "tol3d.apps.records.commands:rig",
@@ -112,7 +112,7 @@ def _reporting(mechanism: "Mechanism", function: Callable[..., Any]) -> Callable
 
     @wraps(function)
     def command(*words: Any, **options: Any) -> Any:
-        with named("tol3d.system.faults:faults_of")(mechanism.origin):
+        with named("tol3d.study.system.faults:faults_of")(mechanism.origin):
             return function(*words, **options)
 
     return command

@@ -22,7 +22,7 @@ from tol3d.cli.console import err_console, out_console, seconds, tell
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from tol3d.runs.run import Run
+    from tol3d.study.runs.run import Run
 
 
 LONG = 5.0  # s; a check that takes longer says where the time went
@@ -52,10 +52,9 @@ def check(
 
     load_when_used()
 
-    from tol3d.report.check import check_report, parts_report
-    from tol3d.report.drawn_limits import drawn_limits
-    from tol3d.runs.atomic_write import write_whole
+    from tol3d.report.check import check_report, drawn_limits, parts_report
     from tol3d.simulate import load, simulation_of
+    from tol3d.study.runs.atomic_write import write_whole
 
     if parts and out is not None:
         raise InputError("--out: of --parts leave it out; the tree is no table")
@@ -91,8 +90,8 @@ def workspace(
     """Draw how far a linkage reaches, where it is singular, and how well its inputs hold it."""
     from tol3d.errors import InputError, unwritable
     from tol3d.report.presenter import Mapped, presenter_at
-    from tol3d.runs.atomic_write import write_whole
     from tol3d.simulate import load, simulation_of
+    from tol3d.study.runs.atomic_write import write_whole
 
     loaded = load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
     simulation = simulation_of(loaded)
@@ -142,7 +141,7 @@ def schema(
 
         described = named("tol3d.apps.records.summary:IdentifiedSummary")
     elif summary:
-        from tol3d.runs.summary.kinds import default_kinds
+        from tol3d.study.runs.summary.kinds import default_kinds
 
         described = default_kinds().run
     else:
@@ -158,7 +157,7 @@ def compare(
 ) -> None:
     """Lay the histograms of both methods of one or several runs over each other, with the per-trial difference."""
     from tol3d.report import comparison_report, draw_comparison
-    from tol3d.runs.run import open_run
+    from tol3d.study.runs.run import open_run
 
     opened = [open_run(path) for path in runs]
     draw_comparison(opened, out)
@@ -239,7 +238,7 @@ def export(
 ) -> None:
     """Write the perturbed parts of a trial where they ended up."""
     from tol3d.report import export_run
-    from tol3d.runs.run import open_run
+    from tol3d.study.runs.run import open_run
 
     finished = open_run(run)
     which = _which(finished, trial, worst=worst, nominal=nominal, mean=mean)
@@ -270,7 +269,7 @@ def view(
     frames: Annotated[int | None, typer.Option(help="How many frames, with --animate.")] = None,
 ) -> None:
     """Show a trial in 3D; of gears with contact and gap marked."""
-    from tol3d.runs.run import open_run
+    from tol3d.study.runs.run import open_run
 
     _refuse_mixed(screenshot, animate, mesh, {"--motion": motion, "--frames": frames})
     finished = open_run(run)
@@ -307,7 +306,7 @@ def _which(run: "Run", trial: int | None, *, worst: bool, nominal: bool, mean: b
     """The one build that was asked for; the worst by default. Tells which trial that is."""
     from tol3d.errors import InputError
     from tol3d.report.heading import worst_words
-    from tol3d.runs.worst import worst_trial
+    from tol3d.study.runs.worst import worst_trial
 
     words = [word for word, said in (("worst", worst), ("nominal", nominal), ("mean", mean)) if said]
     if len(words) + (trial is not None) > 1:

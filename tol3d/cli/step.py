@@ -1,4 +1,7 @@
-"""Commands on STEP files of others."""
+"""Commands on STEP files of others.
+
+The command on the tolerances of a STEP file.
+"""
 
 from pathlib import Path
 from typing import Annotated
@@ -18,11 +21,11 @@ def features(
     ] = None,
 ) -> None:
     """List the features of the parts in a STEP file, each with a line that selects it in a scene."""
+    from tol3d.cad.step.reading import read_step
     from tol3d.errors import unwritable
     from tol3d.files import read_file
-    from tol3d.report.step_features import features_csv, features_report
-    from tol3d.runs.atomic_write import write_whole
-    from tol3d.step.reading import read_step
+    from tol3d.report.step_tables import features_csv, features_report
+    from tol3d.study.runs.atomic_write import write_whole
 
     found = read_step(read_file(file))
     out_console.print(features_report(found))
@@ -37,3 +40,27 @@ def features(
 
         draw_features(found, picture)
         tell(str(picture))
+
+
+def pmi(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A STEP file with PMI (AP242).")],
+    csv: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the tables as comma-separated values.")
+    ] = None,
+) -> None:
+    """List the datums, tolerances and dimensions of a STEP file, and what each tolerance means in a scene."""
+    from tol3d.cad.step import read_step_text
+    from tol3d.errors import unwritable
+    from tol3d.files import read_file
+    from tol3d.report.step_tables import pmi_report
+    from tol3d.study.runs.atomic_write import write_whole
+
+    content = read_file(file)
+    report = pmi_report(read_step_text(content.content, content.path.name))
+    out_console.print(report)
+    if csv is not None:
+        try:
+            write_whole(csv, report.csv().encode())
+        except OSError as error:
+            raise unwritable(csv, error, "choose another file") from None
+        tell(str(csv))

@@ -43,11 +43,11 @@ from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_conso
 if TYPE_CHECKING:
     from types import FrameType
 
-    from tol3d.execution.watch import Finisher, Watch
     from tol3d.report.page import Page
-    from tol3d.runs.run import Run
-    from tol3d.runs.summary.judged import Accepted
-    from tol3d.study.simulation import Simulation
+    from tol3d.study.execution.watch import Finisher, Watch
+    from tol3d.study.runs.run import Run
+    from tol3d.study.runs.summary.judged import Accepted
+    from tol3d.study.trials.simulation import Simulation
 
 PATIENCE = 5.0  # s; worker processes that will not end may hold up an interrupted command no longer
 
@@ -90,12 +90,12 @@ def run(
     load_when_used()
     asked = accepted_of(accept, accept_ppk)
 
-    from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, Elapsed, run_report
-    from tol3d.runs.occupant import BEING_WRITTEN, numbered
-    from tol3d.runs.summary.judged import all_ok, demand_of
     from tol3d.simulate import Overrides, folder_for, load, run_simulation, simulation_of, workers_for
-    from tol3d.system.faults import faults_of
+    from tol3d.study.execution.pools import Execution
+    from tol3d.study.runs.occupant import BEING_WRITTEN, numbered
+    from tol3d.study.runs.summary.judged import all_ok, demand_of
+    from tol3d.study.system.faults import faults_of
 
     path = scene_path(scene)
     overrides = Overrides(trials, seed, engine, sampler.value if sampler else None, witness)
@@ -200,7 +200,7 @@ def _how_to_resume(folder: Path) -> str:
     """Kept part of an interrupted run, and the command that resumes it."""
     import shlex
 
-    from tol3d.runs.occupant import partial_of
+    from tol3d.study.runs.occupant import partial_of
 
     partial = partial_of(folder)
     if not partial.exists():
@@ -231,7 +231,7 @@ def _drawing(wanted: str | None) -> "Iterator[Callable[[Path, Mapping[str, Any]]
 
 def long_study(simulation: "Simulation") -> str:
     """Notice before a study that takes a minute of one core or more; empty for a shorter one."""
-    from tol3d.study.blocks import contacts_of
+    from tol3d.study.results.task import contacts_of
 
     positions = contacts_of(simulation)
     study = simulation.study
@@ -267,11 +267,11 @@ def _stopped_in_order() -> Iterator[None]:
 def _what_to_change(run: "Run", simulation: "Simulation", accepted: "Accepted") -> "Page":
     """A few lines below the verdict, kept in the run; a run that cannot be asked is whole without them."""
     from tol3d.analyses.changes_of_run import changes_of_run
+    from tol3d.analyses.shown_changes import changes_lines
     from tol3d.analyses.subject import keep
-    from tol3d.analyses.what_to_change_table import changes_lines
     from tol3d.errors import InputError
     from tol3d.report.page import page
-    from tol3d.system.faults import faults_of
+    from tol3d.study.system.faults import faults_of
 
     try:
         with faults_of(simulation.mechanism):

@@ -19,14 +19,11 @@ from tol3d.gearing.grammar.checks import (
 )
 from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.gearing.grammar.published import PublishedTrains
+from tol3d.scene.bases import MeasureEntry, MoveSpec, PartSpec, ToleranceEntry
 from tol3d.scene.entry import Entry, kind_of
 from tol3d.scene.grammar import specs_in
-from tol3d.scene.measure import MeasureEntry
-from tol3d.scene.move import MoveSpec
-from tol3d.scene.part import PartSpec
 from tol3d.scene.temperature import TemperatureSpec
-from tol3d.scene.tolerance import ToleranceEntry
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 
 
 def _kinds(base: type[Entry], place: ModuleType = grammar) -> tuple[type[Any], ...]:

@@ -17,10 +17,10 @@ from tol3d.gearing.model.measure import Reading
 from tol3d.gearing.shafts import Mesh
 from tol3d.gearing.system import GearSystem
 from tol3d.numerics.arrays import Array
-from tol3d.study.draws import drawn
-from tol3d.study.simulation import Simulation
-from tol3d.system.system import System
-from tol3d.system.trials import Trials
+from tol3d.study.system.system import System
+from tol3d.study.system.trials import Trials
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.simulation import Simulation
 
 POSITIONS_AT_ONCE: Final = 2**15  # of which each takes 100 bytes of readings
 READING: Final = Reading()

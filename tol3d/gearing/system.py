@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.cad.solids import FlankStrips, measuring_strips
 from tol3d.errors import InputError
 from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.gaps import STATUSES, exact_engine, exact_is_compiled, fcl_engine
@@ -18,8 +19,8 @@ from tol3d.gearing.methods.interference import interferences
 from tol3d.gearing.methods.neglected import neglected, of_gaps
 from tol3d.gearing.methods.regressors import acting, position_column, regress, regressor_key
 from tol3d.gearing.model import Contributor, Measure, Model, model_from_scene
-from tol3d.gearing.model.contributor import gear_contributor
 from tol3d.gearing.model.measure import gear_measure, gear_measures
+from tol3d.gearing.model.model import gear_contributor
 from tol3d.gearing.play.linked import link_contributors
 from tol3d.gearing.play.play import breakdowns_of
 from tol3d.gearing.stack_up import closed_form, reference_form
@@ -27,17 +28,15 @@ from tol3d.gearing.summary.train_sections import description, train_sections
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import kept
 from tol3d.scene import Scene
-from tol3d.solids import FlankStrips, measuring_strips
-from tol3d.system import contributor as system_contributor
-from tol3d.system import measure as system_measure
-from tol3d.system.breakdown import Breakdown
-from tol3d.system.closed_form import ClosedForm
-from tol3d.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
-from tol3d.system.pooled import PooledTerms
-from tol3d.system.positions import Positions
-from tol3d.system.statuses import Statuses
-from tol3d.system.system import Columns, KeyPath, Published, StreamKey, System
-from tol3d.system.trials import Trials
+from tol3d.study.system import contributor as system_contributor
+from tol3d.study.system import measure as system_measure
+from tol3d.study.system.closed_form import ClosedForm
+from tol3d.study.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
+from tol3d.study.system.outcome import Statuses
+from tol3d.study.system.pooled import Breakdown, PooledTerms
+from tol3d.study.system.positions import Positions
+from tol3d.study.system.system import Columns, KeyPath, Published, StreamKey, System
+from tol3d.study.system.trials import Trials
 
 Strips = Mapping[str, FlankStrips]
 

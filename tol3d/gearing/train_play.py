@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.engines.gaps import STATUSES
-from tol3d.gearing.meshing.backlash import moved
+from tol3d.gearing.meshing.seats import moved
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Positions
 from tol3d.gearing.model.measure import AnyStage, ParallelStage
 from tol3d.gearing.model.mesh_measures import reader_like, refuse_idle_teeth
@@ -26,22 +26,22 @@ from tol3d.gearing.summary.train_sections import train_sections
 from tol3d.gearing.summary.types import Ends
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.gears import Flank
-from tol3d.gears.flank import opposite
+from tol3d.gears.toothed_gear import opposite
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.values import made
 from tol3d.scene import Scene
-from tol3d.study.breakdowns import pooled_terms
-from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.simulation import Simulation
-from tol3d.study.task import materials_of, method_of
-from tol3d.system.breakdown import Breakdown
-from tol3d.system.closed_form import ClosedForm
-from tol3d.system.method import Method
-from tol3d.system.outcome import METHODS, SEATED, Columns, status_column, value_column
-from tol3d.system.system import System
-from tol3d.system.taken import ROWS_AT_ONCE
-from tol3d.system.trials import Trials
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.runs.summary.values import made
+from tol3d.study.system.closed_form import ClosedForm
+from tol3d.study.system.method import Method
+from tol3d.study.system.outcome import METHODS, SEATED, Columns, status_column, value_column
+from tol3d.study.system.pooled import Breakdown
+from tol3d.study.system.system import System
+from tol3d.study.system.taken import ROWS_AT_ONCE
+from tol3d.study.system.trials import Trials
+from tol3d.study.tallies.tally import pooled_terms
+from tol3d.study.trials.columns import columns_of
+from tol3d.study.trials.draws import drawn
+from tol3d.study.trials.simulation import Simulation
 from tol3d.units import ARCMIN
 
 CLOSED_FORM: Final = "closed form"

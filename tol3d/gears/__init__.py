@@ -2,15 +2,14 @@
 
 from tol3d.gears.bevel_gear import BevelGear, pitch_angles
 from tol3d.gears.bevel_pair import BevelPair
-from tol3d.gears.flank import LEFT, RIGHT, Flank, opposite
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_pair import InternalPair
 from tol3d.gears.involute import inverse_involute, involute
-from tol3d.gears.one_tooth import driver_teeth_at_one_tooth, one_tooth_acts, one_tooth_share
-from tol3d.gears.pair import Displaced, Gear, GearPair
+from tol3d.gears.pair import Displaced, Gear, GearPair, driver_teeth_at_one_tooth, one_tooth_acts, one_tooth_share
 from tol3d.gears.spherical_involute import inverse_spherical_involute, spherical_involute
 from tol3d.gears.spur_gear import SpurGear
 from tol3d.gears.spur_pair import SpurPair
+from tol3d.gears.toothed_gear import LEFT, RIGHT, Flank, opposite
 from tol3d.gears.undercut import RACK_ADDENDUM
 
 __all__ = [

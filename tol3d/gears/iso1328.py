@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.errors import GeometryError
-from tol3d.standards import half_up
+from tol3d.statistics.standards import half_up
 
 UM: Final = 1e-3  # mm
 CLASSES: Final = (1, 11)

@@ -1,4 +1,7 @@
-"""Results that are computed once: of methods of frozen objects, and of rows of numbers."""
+"""Results that are computed once: of methods of frozen objects, and of rows of numbers.
+
+Things as keys of caches: themselves, not their likes.
+"""
 
 from collections.abc import Callable, Hashable, Sequence
 from functools import update_wrapper
@@ -64,3 +67,16 @@ class KnownRows(Generic[Result]):
 def row_keys(rows: Array) -> list[bytes]:
     """Digests of rows (n, ...), of their bytes."""
     return [blake2b(row, digest_size=16).digest() for row in np.ascontiguousarray(rows)]
+
+
+class Itself:
+    """A thing as a key; hashing its content may take longer than computing the value kept under it."""
+
+    def __init__(self, thing: Any) -> None:
+        self.thing = thing
+
+    def __hash__(self) -> int:
+        return id(self.thing)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Itself) and other.thing is self.thing

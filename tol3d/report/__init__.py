@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from tol3d.report.canvas import save_figure
     from tol3d.report.chart_figure import (
         charts_figure,
+        draw_comparison,
         save_charts,
     )
     from tol3d.report.check import check_report
     from tol3d.report.compare import comparison_report
-    from tol3d.report.comparison_picture import draw_comparison
     from tol3d.report.declared import (
         declared_table,
         side_by_side,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         export_run,
         part_meshes,
     )
-    from tol3d.report.histogram import draw_histogram
+    from tol3d.report.figures import draw_histogram
     from tol3d.report.html.blocks import page_html
     from tol3d.report.html.document import report_html
     from tol3d.report.measure_charts import spanned
@@ -49,8 +49,8 @@ _HOMES = {
     "check_report": "tol3d.report.check",
     "comparison_report": "tol3d.report.compare",
     "declared_table": "tol3d.report.declared",
-    "draw_comparison": "tol3d.report.comparison_picture",
-    "draw_histogram": "tol3d.report.histogram",
+    "draw_comparison": "tol3d.report.chart_figure",
+    "draw_histogram": "tol3d.report.figures",
     "export_run": "tol3d.report.export",
     "given_text": "tol3d.report.number",
     "page_html": "tol3d.report.html.blocks",

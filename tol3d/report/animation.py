@@ -21,8 +21,8 @@ from tol3d.report.drawn_solids import (
 from tol3d.report.motion import Motion, Shot, motion_of
 from tol3d.report.presenter import Display, Which, presenter_of, require_bodies
 from tol3d.report.view import choose_window
-from tol3d.runs.atomic_write import write_whole
-from tol3d.runs.run import Run
+from tol3d.study.runs.atomic_write import write_whole
+from tol3d.study.runs.run import Run
 
 Pictures = Sequence[Image.Image]
 

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.values import Method
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.values import Method
 
 FEWEST_BARS = 8
 Limits = tuple[float | None, float | None]

@@ -7,8 +7,8 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.cad.solids import BuiltShape, PosedPart, PosedShape, paint_of, surface_of
 from tol3d.numerics.arrays import Array
-from tol3d.solids import BuiltShape, PosedPart, PosedShape, paint_of, surface_of
 
 Surface = tuple[Array, NDArray[np.int64]]
 

@@ -12,18 +12,17 @@ import numpy as np
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.bars import Bars
-from tol3d.report.column import seated_text
+from tol3d.report.column import is_bounded, seated_text
 from tol3d.report.declared import declared_table
-from tol3d.report.ends import is_bounded
 from tol3d.report.joint import joint_comparison
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text
 from tol3d.report.page import BLANK, Page, PageItem, Row, Shown, Table, line, note, page, title
 from tol3d.report.verdict import verdict_lines
-from tol3d.runs.run import Run
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.shows import Shows
-from tol3d.runs.summary.values import Method
-from tol3d.system.outcome import METHODS, outcome_of, status_column, value_column
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.shows import Shows
+from tol3d.study.runs.summary.values import Method
+from tol3d.study.system.outcome import METHODS, outcome_of, status_column, value_column
 
 BARS = 40
 MOST_NAMED = 3  # contributors of a sentence

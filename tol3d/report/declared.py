@@ -17,7 +17,7 @@ from tol3d.report.number import (
     value_text,
 )
 from tol3d.report.page import Heading, Row, Shown, Table
-from tol3d.runs.summary.shows import Shows, columns_of, shown_by
+from tol3d.study.runs.summary.shows import Shows, columns_of, shown_by
 
 LEFT: Final = frozenset(("words", "unit sign"))
 """Forms of cells that stand left and wrap."""

@@ -5,14 +5,14 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tol3d.runs.run import Run
-from tol3d.runs.run import open_run as opened
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.run import open_run as opened
 
 if TYPE_CHECKING:
     from tol3d.report.figures import MeasureFigures
 
 FIGURES = "tol3d.report.figures"  # loads what draws, and so not before it is asked for
-SHOWN = "tol3d.report.html.run_block"  # so does this, tables
+SHOWN = "tol3d.report.html.blocks"  # so does this, tables
 
 
 @dataclass(frozen=True, repr=False)
@@ -40,7 +40,7 @@ class DisplayedRun(Run):
 
 
 def open_run(path: Path | str) -> DisplayedRun:
-    """Open a run's folder, which a stranger may have made; executes nothing of it: see tol3d.runs.run.open_run.
+    """Open a run's folder, which a stranger may have made; executes nothing of it: see tol3d.study.runs.run.open_run.
 
     Raises:
         RunError: not a run, damaged, or changed since it was made.

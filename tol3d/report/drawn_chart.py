@@ -24,6 +24,7 @@ from tol3d.report.canvas import (
     VERMILLION,
     label_angles,
     plain_axes,
+    wrapped,
 )
 from tol3d.report.chart import (
     Axis,
@@ -43,7 +44,6 @@ from tol3d.report.chart import (
     Role,
 )
 from tol3d.report.heading import legible
-from tol3d.report.label import wrapped
 from tol3d.report.number import NOTHING
 
 COLOURS: Final[Mapping[Role, str]] = {

@@ -12,12 +12,12 @@ import numpy as np
 import trimesh
 from trimesh.visual.material import PBRMaterial
 
+from tol3d.cad.solids import export_step
 from tol3d.errors import InputError, unwritable
 from tol3d.report.body import Body, World
 from tol3d.report.presenter import Display, Which, presenter_of, require_bodies
-from tol3d.runs.atomic_write import named_in_errors
-from tol3d.runs.run import Run
-from tol3d.solids import export_step
+from tol3d.study.runs.atomic_write import named_in_errors
+from tol3d.study.runs.run import Run
 
 FORMATS: Final = ("stl", "ply", "glb", "step")
 ROUGHNESS: Final = 0.55

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, TypeVar
 
 from tol3d.report.number import limit_text
-from tol3d.runs.summary.measure import MeasureSummary, Worse
-from tol3d.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.measure import MeasureSummary, Worse
+from tol3d.study.runs.summary.run import RunSummary
 
 ENDS: Mapping[Worse, str] = {"low": "smallest", "high": "largest"}
 

@@ -9,10 +9,9 @@ from typing import Annotated, Final
 from tol3d.report.declared import declared_table
 from tol3d.report.number import NOTHING, unsigned_zero
 from tol3d.report.page import Line, PageItem, Row, Shown, Table, note, title
-from tol3d.runs.summary.joint import Correlations, Joint
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.shows import Shows
-from tol3d.runs.summary.values import Method
+from tol3d.study.runs.summary.run import Correlations, Joint, RunSummary
+from tol3d.study.runs.summary.shows import Shows
+from tol3d.study.runs.summary.values import Method
 
 MOST_PAIRS: Final = 12  # correlations that are printed, the largest; all are in correlations.csv
 NORMAL_95: Final = 1.959964  # sigma; a normal's 95 % lie within

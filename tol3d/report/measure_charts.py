@@ -26,12 +26,11 @@ from tol3d.report.chart import (
     Role,
     Series,
 )
-from tol3d.report.column import Column, columns_of, seated_text
-from tol3d.report.ends import QUANTILES_MEAN, Ends, is_bounded
+from tol3d.report.column import QUANTILES_MEAN, Column, Ends, columns_of, is_bounded, seated_text
 from tol3d.report.heading import heading, position_of
 from tol3d.report.number import UNIT_SIGNS, limit_text, measured_text, share_text, short_text
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.values import Section
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.values import Section
 
 SIGMAS_SHOWN: Final = 3.6  # of the mean; a little more than the +-3 sigma that are marked
 LIMIT_REACH: Final = 0.6  # of the shown span; a limit further off is named at the edge, not drawn to scale

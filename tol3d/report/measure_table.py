@@ -34,10 +34,10 @@ from tol3d.report.published import (
     published_rows,
     statistic_row,
 )
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.sample import CurveMethods, Methods
-from tol3d.system.outcome import SEATED
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.sample import CurveMethods, Methods
+from tol3d.study.system.outcome import SEATED
 from tol3d.units import FACTORS, RESOLVED, UNITS
 
 CONVERTED_ROWS = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}

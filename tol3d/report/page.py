@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from tol3d.runs.csv_text import csv_text
+from tol3d.study.runs.csv_text import csv_text
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

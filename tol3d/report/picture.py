@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from tol3d.report.presenter import presenter_of
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.text import kinds_of
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.text import kinds_of
 
 MOST_TOGETHER = 4  # measures in one picture; of more, the worst
 HEAT_MAP = "contributors.png"  # with all pictures

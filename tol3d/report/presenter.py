@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
 from tol3d.errors import InputError
 from tol3d.report.page import PageItem
-from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.measure import MeasureSummary
 
 if TYPE_CHECKING:
     import pyvista as pv
 
     from tol3d.report.body import World
-    from tol3d.runs.run import Run
-    from tol3d.runs.summary.run import RunSummary
-    from tol3d.study.replaying import Replay
-    from tol3d.study.simulation import Simulation
+    from tol3d.study.results.replaying import Replay
+    from tol3d.study.runs.run import Run
+    from tol3d.study.runs.summary.run import RunSummary
+    from tol3d.study.trials.simulation import Simulation
 
 SYSTEM_CHECK = "tol3d.report.system_check"  # loads distributions, and so scipy, which pictures do without
 

@@ -10,10 +10,10 @@ from tol3d import report
 from tol3d.errors import unwritable
 from tol3d.report.page import Page, Table
 from tol3d.report.sheet import as_text
-from tol3d.runs.frame import frame_of_rows
+from tol3d.study.runs.frame import frame_of_rows
 
 if TYPE_CHECKING:
-    from tol3d.runs.frame import DataFrame
+    from tol3d.study.runs.frame import DataFrame
 
 TEXT_WIDTH: Final = 120  # columns of a table as text, as wide as a notebook's cell
 WHOLE_NUMBER: Final = re.compile(r"\d{1,15}")

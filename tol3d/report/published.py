@@ -17,12 +17,11 @@ from tol3d.report.number import (
 )
 from tol3d.report.page import PageItem, Row, Shown, Table, note, title
 from tol3d.report.shown_unit import Spread
-from tol3d.runs.summary.joint import Joint
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.sample import Sample
-from tol3d.runs.summary.shows import shown_by
-from tol3d.runs.summary.values import Method, Section, key_of
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import Joint, RunSummary
+from tol3d.study.runs.summary.sample import Sample
+from tol3d.study.runs.summary.shows import shown_by
+from tol3d.study.runs.summary.values import Method, Section, key_of
 
 POOLED: Final[Mapping[str, str]] = {"half_span": "99.73 % half-range"}
 AGREEMENT: Final[Mapping[str, str]] = {

@@ -17,10 +17,10 @@ from tol3d.report.published import published_blocks
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.table import measure_blocks, status_line
 from tol3d.report.verdict import verdict_report
-from tol3d.runs.run import Run
-from tol3d.runs.summary.judged import Accepted
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.shows import Computed, RowOf, Shows
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.summary.judged import Accepted
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
 
 VERDICT, MORE, CORRELATIONS, TRIALS, PROVENANCE = "verdict", "more", "correlations", "trials", "provenance"
 RUNS, MEASURES = "runs", "measures"

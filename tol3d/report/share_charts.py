@@ -10,8 +10,8 @@ from tol3d.report.column import Column, columns_of, ranked_contributors, shares_
 from tol3d.report.heading import WORST_FIRST, largest, shown_measures
 from tol3d.report.measure_charts import METHOD_WORDS, column_roles
 from tol3d.report.number import percent_text
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
 
 MOST_CONTRIBUTORS: Final = 9  # bars; the rest is shown as one
 MOST_COLUMNS: Final = 40  # measures

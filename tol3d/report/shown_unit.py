@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
 from tol3d.report.number import UM_PER_MM, UNIT_SIGNS
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.values import Section
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.values import Section
 
 T = TypeVar("T", bound=Section)
 

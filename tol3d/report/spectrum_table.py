@@ -6,9 +6,9 @@ from tol3d.report.column import heading_by
 from tol3d.report.number import UNIT_SIGNS, value_cell
 from tol3d.report.page import PageItem, Row, Table, note
 from tol3d.report.published import spectrum_columns
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.sample import CurveMethods, SpectrumSample
-from tol3d.runs.summary.values import Method
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.sample import CurveMethods, SpectrumSample
+from tol3d.study.runs.summary.values import Method
 
 ORDER_ROWS = 12  # orders that are printed; summary.json has them all
 MEANING = "amplitudes of each trial's curve, half of peak to peak; order: cycles per turn"

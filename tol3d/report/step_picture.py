@@ -9,13 +9,24 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
+from tol3d.cad.step.found_features import FeatureKind, FoundFeature
+from tol3d.cad.step.reading import StepFile, StepPart
+from tol3d.cad.step.refused import shown
+from tol3d.cad.step.selectors import names
 from tol3d.numerics.arrays import Array
-from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, new_figure, save_figure
-from tol3d.report.label import wrapped
-from tol3d.step.found import FeatureKind, FoundFeature
-from tol3d.step.reading import StepFile, StepPart
-from tol3d.step.refused import shown
-from tol3d.step.selecting import names
+from tol3d.report.canvas import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    new_figure,
+    save_figure,
+    wrapped,
+)
 
 WIDTH, HEIGHT = 12.0, 6.5  # inch; of a part
 NUMBER_SIZE, NAME_SIZE = 5.5, 11.0  # points

@@ -7,24 +7,24 @@ from typing import Annotated
 
 import numpy as np
 
-from tol3d.distributions import DeviationLaw, Distribution, Empirical
-from tol3d.distributions.derived import Derived
 from tol3d.report.declared import declared_table
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, badness, largest
 from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limits_text, measured_text, unsigned_zero, value_text
 from tol3d.report.page import Further, Line, PageItem, Row, Shown, Table, note, some, titled, warning
 from tol3d.report.shown_unit import shown_unit
 from tol3d.report.worst_found import WORST_FOUND, worst_text
-from tol3d.runs.summary.shows import Computed, RowOf, Shows
-from tol3d.statistics.limits import normal_share
-from tol3d.study.acting import acting, nothing_acts
-from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
-from tol3d.study.simulation import Simulation
-from tol3d.study.task import materials_of, method_of
-from tol3d.study.worst_cases import worst_cases
-from tol3d.system.contributor import Contributor
-from tol3d.system.draw import JointDraw, MiddleDraw, drawn_each, told_sigma
-from tol3d.system.measure import Measure
+from tol3d.statistics.distributions import DeviationLaw, Distribution, Empirical
+from tol3d.statistics.distributions.derived import Derived
+from tol3d.statistics.estimates.limits import normal_share
+from tol3d.study.effects.acting_contributors import acting, nothing_acts
+from tol3d.study.effects.first_order import FirstOrder, FirstOrderEffect, first_orders
+from tol3d.study.effects.worst_cases import worst_cases
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.draw import JointDraw, MiddleDraw, drawn_each, told_sigma
+from tol3d.study.system.measure import Measure
+from tol3d.study.trials.simulation import Simulation
 
 SLOPES = (
     "slope: change of the measure per unit of the deviation at the mean build, from differences over ± one sigma; for "

@@ -4,8 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from enum import Enum
 from typing import NamedTuple
 
-from tol3d.report.column import NOT_ATTRIBUTED, seated_text, shares_by_words
-from tol3d.report.ends import is_bounded
+from tol3d.report.column import NOT_ATTRIBUTED, is_bounded, seated_text, shares_by_words
 from tol3d.report.heading import MOST_CONTRIBUTORS, limits_text, shown_measures
 from tol3d.report.joint import correlation_blocks
 from tol3d.report.measure_table import (
@@ -33,12 +32,12 @@ from tol3d.report.published import published_blocks, published_notes
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.spectrum_table import spectrum_blocks
 from tol3d.report.verdict import ppk_bounds_text, short_verdict, verdict_report
-from tol3d.runs.summary.agreement import Agreement, Explanation, LinearPart
-from tol3d.runs.summary.judged import Accepted
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.sample import CurveMethods, Sample
-from tol3d.system.outcome import SEATED
+from tol3d.study.runs.summary.agreement import Agreement, Explanation, LinearPart
+from tol3d.study.runs.summary.judged import Accepted
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.sample import CurveMethods, Sample
+from tol3d.study.system.outcome import SEATED
 
 NAMED = 3  # contributors of one reason
 

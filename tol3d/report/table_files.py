@@ -12,8 +12,8 @@ from tol3d.report.number import NOTHING
 from tol3d.report.page import Heading, Shown, Table
 from tol3d.report.report_sections import ReportSection, section_tables
 from tol3d.report.workbook import Cell, Sheet, workbook
-from tol3d.runs.atomic_write import write_whole
-from tol3d.runs.csv_text import csv_text
+from tol3d.study.runs.atomic_write import write_whole
+from tol3d.study.runs.csv_text import csv_text
 
 LONGEST_FILE_NAME: Final = 60
 UNIT: Final = "unit"

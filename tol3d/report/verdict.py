@@ -6,7 +6,9 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Final, get_args
 
 from tol3d.report.column import (
+    Ends,
     columns_of,
+    is_bounded,
     leading_shares,
     ranked_contributors,
     seated_text,
@@ -14,17 +16,16 @@ from tol3d.report.column import (
     unexplained_words,
 )
 from tol3d.report.declared import declared_table
-from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, shown_measures
 from tol3d.report.joint import yield_lines
 from tol3d.report.number import NOTHING, bounded_share_text, counted, limits_text, share_text
 from tol3d.report.page import BLANK, TITLE, Line, PageItem, Row, Table, line, note
-from tol3d.runs.summary.judged import Accepted, AcceptedPpk, JudgedMeasure, Verdict, demand_of
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.sample import PpkBy
-from tol3d.runs.summary.shows import Computed, Shows
-from tol3d.statistics.limits import ppk_beyond
+from tol3d.statistics.estimates.limits import ppk_beyond
+from tol3d.study.runs.summary.judged import Accepted, AcceptedPpk, JudgedMeasure, Verdict, demand_of
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.sample import PpkBy
+from tol3d.study.runs.summary.shows import Computed, Shows
 
 PPK_BY: Final[Mapping[PpkBy, str]] = {
     "quantiles": "quantiles",

@@ -15,7 +15,7 @@ from tol3d.report.body import World
 from tol3d.report.drawn_solids import add_title
 from tol3d.report.presenter import Display, Panel, Which, presenter_of, require_bodies
 from tol3d.report.whole import draw_whole
-from tol3d.runs.run import Run
+from tol3d.study.runs.run import Run
 
 WINDOW_SIZE: Final = (1800, 1050)  # pixels
 TITLE_SIZE: Final = 13

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from tol3d.report.html.tags import Markup, escaped, tag
+from tol3d.report.html.blocks import Markup, escaped, tag
 
 Cell = str | float | int | None
 

@@ -7,13 +7,13 @@ from typing import Annotated, Final
 from tol3d.report.declared import declared_table
 from tol3d.report.number import NOTHING, UM_PER_MM, measured_text
 from tol3d.report.page import PageItem, note, titled
-from tol3d.runs.summary.shows import Shows
-from tol3d.study.simulation import Simulation
-from tol3d.study.task import materials_of, method_of
-from tol3d.study.worst_case import WorstBuild, WorstCase
-from tol3d.study.worst_cases import worst_cases
-from tol3d.system.measure import Measure
-from tol3d.system.statuses import OK
+from tol3d.study.effects.worst_case import WorstBuild, WorstCase
+from tol3d.study.effects.worst_cases import worst_cases
+from tol3d.study.results.task import materials_of, method_of
+from tol3d.study.runs.summary.shows import Shows
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.outcome import OK
+from tol3d.study.trials.simulation import Simulation
 
 WORST_FOUND: Final = (
     "worst found: the worst of a search among builds within the tolerances, at rest; worse ones may exist; left out if "

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 from tol3d.import_path import lazy_names
 
 if TYPE_CHECKING:
+    from tol3d.scene.bases import Length, MeasureEntry, MoveSpec, PartSpec, ToleranceSpec
     from tol3d.scene.edit import (
         tolerance_lines,
         with_tolerances,
         write_scene,
     )
+    from tol3d.scene.entry import Reference
     from tol3d.scene.grammar import (
         Grammar,
         Kinds,
@@ -22,29 +24,21 @@ if TYPE_CHECKING:
         read_scene,
         scene_from_python,
     )
-    from tol3d.scene.measure import MeasureEntry
-    from tol3d.scene.move import MoveSpec
     from tol3d.scene.name import Name
     from tol3d.scene.nearest import hint
-    from tol3d.scene.part import (
-        Length,
-        PartSpec,
-    )
-    from tol3d.scene.reference import Reference
     from tol3d.scene.schema import Scene
-    from tol3d.scene.tolerance import ToleranceSpec
 
 _HOMES = {
     "Grammar": "tol3d.scene.grammar",
     "Kinds": "tol3d.scene.grammar",
-    "Length": "tol3d.scene.part",
-    "MeasureEntry": "tol3d.scene.measure",
-    "MoveSpec": "tol3d.scene.move",
+    "Length": "tol3d.scene.bases",
+    "MeasureEntry": "tol3d.scene.bases",
+    "MoveSpec": "tol3d.scene.bases",
     "Name": "tol3d.scene.name",
-    "PartSpec": "tol3d.scene.part",
-    "Reference": "tol3d.scene.reference",
+    "PartSpec": "tol3d.scene.bases",
+    "Reference": "tol3d.scene.entry",
     "Scene": "tol3d.scene.schema",
-    "ToleranceSpec": "tol3d.scene.tolerance",
+    "ToleranceSpec": "tol3d.scene.bases",
     "Vocabulary": "tol3d.scene.grammar",
     "hint": "tol3d.scene.nearest",
     "read_scene": "tol3d.scene.load",

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from tol3d.errors import InputError, unwritable
+from tol3d.scene.bases import ToleranceEntry
 from tol3d.scene.including import INCLUDE
 from tol3d.scene.load import read_scene
 from tol3d.scene.schema import Scene
 from tol3d.scene.splice import INDENT, flow_text, spliced, written_values
-from tol3d.scene.tolerance import ToleranceEntry
 
 Tolerances = Mapping[str, ToleranceEntry]
 

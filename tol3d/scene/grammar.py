@@ -10,23 +10,20 @@ from typing import Annotated, Any, Final, Protocol, Union
 
 from pydantic import Field, ValidationError, create_model
 
-from tol3d.distributions import DistributionSpec
-from tol3d.distributions.stated import SHIPPED, Laws, word_of
 from tol3d.errors import InputError
 from tol3d.import_path import REGISTRY
+from tol3d.scene.bases import MeasureEntry, MoveSpec, PartSpec, ToleranceEntry, laws_in
 from tol3d.scene.entry import Entry, kind_of
 from tol3d.scene.implausible import warned
-from tol3d.scene.measure import MeasureEntry
-from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.options import Engines, Option, StudyOptions, options_of
-from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin
 from tol3d.scene.problems import messages
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.measure import published_column_class
 from tol3d.scene.schema import PUBLISHED_MEANS, SECTIONS, Scene, StudySpec, study_spec_class
-from tol3d.scene.tolerance import ToleranceEntry, laws_in
+from tol3d.statistics.distributions import DistributionSpec
+from tol3d.statistics.distributions.stated import SHIPPED, Laws, word_of
 
 Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
 """Check across entries whose names all exist: gives key path and finished sentence of each inconsistency."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Final
 
-from tol3d.distributions import Distribution
 from tol3d.scene.place import KeyPath, path_text, printable
+from tol3d.statistics.distributions import Distribution
 from tol3d.units import Quantity
 
 ROUNDED_SIZE: Final = 0.01  # share of a size by which a drawing may round it

@@ -13,19 +13,18 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pydantic import ValidationError
 
-from tol3d.distributions.drawn import DEFAULT_LAW
 from tol3d.errors import SceneError
 from tol3d.files import FileContent, Files, UnreadableFileError, contained, read_contained
+from tol3d.scene.bases import laws_in
 from tol3d.scene.correlation import CORRELATIONS
 from tol3d.scene.including import INCLUDE, IncludeSpec, Including
 from tol3d.scene.nearest import hint
-from tol3d.scene.node import Children, Node, Places, branch, plain
-from tol3d.scene.place import KeyPath, Origin, Place
+from tol3d.scene.place import Children, KeyPath, Node, Origin, Place, Places, branch, plain
 from tol3d.scene.references import bad_names, refuse
 from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.scene.text import MAX_BYTES, MAX_NODES, near_file, scene_text
-from tol3d.scene.tolerance import laws_in
 from tol3d.scene.vector import Vector
+from tol3d.statistics.distributions.drawn import DEFAULT_LAW
 from tol3d.units import Quantity, shown, summed
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from tol3d.import_path import named
 from tol3d.scene.bundled import scene_path
 from tol3d.scene.grammar import Grammar, Kinds
 from tol3d.scene.include import Includes
-from tol3d.scene.node import Node, Places, plain
-from tol3d.scene.place import Origin
+from tol3d.scene.place import Node, Origin, Places, plain
 from tol3d.scene.references import bad_names, loose_ends, refuse, unreadable_files
 from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.scene.text import read_scene_text, scene_text

@@ -8,10 +8,10 @@ from typing import Any, Final, Protocol
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from tol3d.scene.bases import ToleranceSpec
 from tol3d.scene.entry import Entry
 from tol3d.scene.nearest import LISTED_WORDS, LONGEST_WORD, hint, nearest
 from tol3d.scene.place import KeyPath, Origin, key_text
-from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.units import COMMA_SEPARATES, EXAMPLES, FACTORS, NUMBER_UNIT, Dimension, expectation, shown
 
 MOST_PROBLEMS = 8  # what a screen shows and a person mends in one go

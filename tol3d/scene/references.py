@@ -5,14 +5,13 @@ from pathlib import Path
 from stat import S_ISREG
 
 from tol3d.errors import SceneError
-from tol3d.scene.entry import Entry
+from tol3d.scene.entry import Entry, Reference, Unusable
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
 from tol3d.scene.problems import first_few
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.figures import quantities_in
 from tol3d.scene.published.whole import PublishedWhole
-from tol3d.scene.reference import Reference, Unusable
 from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.units import expectation, shown
 

@@ -23,28 +23,25 @@ from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from tol3d.distributions.default_law import StatedLimitLaw
-from tol3d.distributions.drawn import DEFAULT_LAW, default_law
-from tol3d.distributions.stated import SHIPPED, Laws, stating
 from tol3d.errors import InputError, SceneError
 from tol3d.files import Files
 from tol3d.import_path import named
-from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
+from tol3d.scene.bases import MeasureEntry, MoveSpec, PartSpec, ToleranceEntry, ToleranceSpec
 from tol3d.scene.correlation import CorrelationSpec
 from tol3d.scene.entry import Entry
 from tol3d.scene.including import with_include
 from tol3d.scene.listed import listed
-from tol3d.scene.measure import MeasureEntry
-from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name, Title
 from tol3d.scene.nearest import nearest
 from tol3d.scene.options import THEORY, Engines, StudyOptions
-from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.published import PublishedColumn
-from tol3d.scene.tolerance import ToleranceEntry, ToleranceSpec
-from tol3d.standards import iso_2768
-from tol3d.statistics.limits import MOST_PPK
+from tol3d.statistics.distributions.default_law import StatedLimitLaw
+from tol3d.statistics.distributions.drawn import DEFAULT_LAW, default_law
+from tol3d.statistics.distributions.stated import SHIPPED, Laws, stating
+from tol3d.statistics.estimates.limits import MOST_PPK
+from tol3d.statistics.samplers.replicates import REPLICATES, SamplerKind, uneven
+from tol3d.statistics.standards import iso_2768
 from tol3d.strict import Strict, refused
 from tol3d.units import Positive, Quantity, shown
 

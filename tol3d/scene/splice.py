@@ -16,8 +16,7 @@ from typing import Any, Final
 import yaml
 
 from tol3d.errors import InputError, SceneError
-from tol3d.scene.node import plain
-from tol3d.scene.place import KeyPath, path_text
+from tol3d.scene.place import KeyPath, path_text, plain
 from tol3d.scene.text import LOADER, scene_text
 
 INDENT: Final = 2

@@ -5,11 +5,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.bases import GrowingSpec, MoveSpec, PartSpec, ToleranceSpec
+from tol3d.scene.entry import Contradiction, Reference
 from tol3d.scene.name import LONGEST_NAME, Name
-from tol3d.scene.part import GrowingSpec, PartSpec
-from tol3d.scene.reference import Contradiction, Reference
-from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.strict import refused
 from tol3d.units import ABSOLUTE_ZERO, Dimension, shown
 

@@ -19,8 +19,7 @@ import yaml
 from yaml.reader import ReaderError
 
 from tol3d.errors import SceneError
-from tol3d.scene.node import Key, Node, Places, branch, plain
-from tol3d.scene.place import KeyPath, Origin, Place
+from tol3d.scene.place import Key, KeyPath, Node, Origin, Place, Places, branch, plain
 from tol3d.units import shown
 
 MAX_BYTES: Final = 4_000_000  # seven times a scene of 300 parts and 1800 tolerances, which takes a second to parse

@@ -9,18 +9,17 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from tol3d.distributions.drawn import DEFAULT_LAW
 from tol3d.errors import InputError
 from tol3d.scene.edit import without
 from tol3d.scene.include import Includes
 from tol3d.scene.including import INCLUDE
 from tol3d.scene.load import scene_of_text
 from tol3d.scene.nearest import hint
-from tol3d.scene.node import plain
-from tol3d.scene.place import KeyPath, path_text
+from tol3d.scene.place import KeyPath, path_text, plain
 from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.scene.splice import INDENT, flow_text, spliced, written_values
 from tol3d.scene.text import scene_text
+from tol3d.statistics.distributions.drawn import DEFAULT_LAW
 from tol3d.units import BARE_NUMBER, NUMBER_UNIT, Quantity
 
 TOP: Final = ("scene", "description", DEFAULT_LAW, "general", "standard", "envelope", *SECTIONS, "study", "published")

@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING
 from tol3d.import_path import lazy_names
 
 if TYPE_CHECKING:
-    from tol3d.study.draws import drawn
-    from tol3d.study.overrides import AS_WRITTEN
-    from tol3d.study.simulation import Simulation
+    from tol3d.study.trials.draws import drawn
+    from tol3d.study.trials.overrides import AS_WRITTEN
+    from tol3d.study.trials.simulation import Simulation
 
 _HOMES = {
-    "AS_WRITTEN": "tol3d.study.overrides",
-    "Simulation": "tol3d.study.simulation",
-    "drawn": "tol3d.study.draws",
+    "AS_WRITTEN": "tol3d.study.trials.overrides",
+    "Simulation": "tol3d.study.trials.simulation",
+    "drawn": "tol3d.study.trials.draws",
 }
 
 __all__ = [

@@ -21,7 +21,7 @@ from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Move, Point
 from tol3d.assembly.model.moves import PointsOn
 from tol3d.assembly.model.statuses import OK, SINGULAR
-from tol3d.assembly.placing.locating import contacts_met
+from tol3d.assembly.placing.locator_move import contacts_met
 from tol3d.assembly.placing.method import placed, values
 from tol3d.errors import InputError
 
@@ -207,7 +207,7 @@ def test_what_is_not_a_number_is_a_fault_and_no_status(monkeypatch: pytest.Monke
         *_, shift, met = given
         shift[0, 12:13], shift[0, met == 0.0] = np.nan, np.nan
 
-    monkeypatch.setattr("tol3d.assembly.placing.locating.contacts_met", losing)
+    monkeypatch.setattr("tol3d.assembly.placing.locator_move.contacts_met", losing)
     with pytest.raises(FloatingPointError, match="the pose of box is not a number in 1 trials"):
         values(nest("part"), deviations, ["corner"])
     monkeypatch.undo()

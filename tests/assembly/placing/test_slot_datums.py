@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from tol3d.assembly.model import Assembly, Axis, Datum, Fix, Plane, Shape, Slot
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing import method as placing
-from tol3d.assembly.placing.holding import held_by_datums, in_words
+from tol3d.assembly.placing.nominal_constraints import held_by_datums, in_words
 from tol3d.assembly.torsors import method as torsors
 from tol3d.errors import InputError
 

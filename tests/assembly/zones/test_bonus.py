@@ -9,9 +9,9 @@ from thinned import thinned
 
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones import Bonus, Confined, Zone, catalogue, normal_in, uniform_in
-from tol3d.distributions import Distribution
-from tol3d.distributions.normal import Normal
-from tol3d.distributions.uniform import Uniform
+from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.normal import Normal
+from tol3d.statistics.distributions.uniform import Uniform
 
 COUNT = 300_000
 

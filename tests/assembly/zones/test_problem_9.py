@@ -9,7 +9,7 @@ from scipy.integrate import dblquad, quad
 from scipy.stats import norm
 
 from tol3d.assembly.zones import ZoneDraw, catalogue, normal_in, process_in, uniform_in
-from tol3d.distributions.normal import Normal
+from tol3d.statistics.distributions.normal import Normal
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from scipy.stats import chi2, ks_2samp, qmc
 from thinned import thinned
 
 from tol3d.assembly.zones import Confined, Zone, catalogue, normal_in, process_in, uniform_in
-from tol3d.distributions.normal import Normal
+from tol3d.statistics.distributions.normal import Normal
 
 Array = NDArray[np.float64]
 

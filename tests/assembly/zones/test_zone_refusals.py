@@ -5,8 +5,8 @@ from collections.abc import Callable
 import pytest
 
 from tol3d.assembly.zones import Bonus, Process, catalogue
-from tol3d.distributions.normal import Normal
 from tol3d.errors import InputError
+from tol3d.statistics.distributions.normal import Normal
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,8 @@ from planetary_sets import working_radii
 from tol3d.apps.design.shifted_set import tip_gap
 from tol3d.apps.design.working_mesh import BasicRack, WorkingMesh, mesh_efficiency, shift_sum
 from tol3d.errors import GeometryError
-from tol3d.planetary import CARRIER, ToothSet, compound, simple, wolfrom
-from tol3d.planetary.model.efficiency import (
+from tol3d.gearing.planetary import CARRIER, ToothSet, compound, simple, wolfrom
+from tol3d.gearing.planetary.model.efficiency import (
     Drive,
     MeshEfficiencies,
     balances,

@@ -13,10 +13,10 @@ from tol3d.apps.design.optimum import Goal, Task, best_shifts
 from tol3d.apps.design.shifted_set import Limits, ShiftedSet, made_pair, refuse_interference
 from tol3d.apps.design.working_mesh import BasicRack, WorkingMesh
 from tol3d.errors import GeometryError
+from tol3d.gearing.planetary import CARRIER, CentralMesh, ToothSet, simple, wolfrom
+from tol3d.gearing.planetary.model.efficiency import Drive
 from tol3d.gears import InternalPair
 from tol3d.gears.internal_mesh import InternalMesh
-from tol3d.planetary import CARRIER, CentralMesh, ToothSet, simple, wolfrom
-from tol3d.planetary.model.efficiency import Drive
 
 REDUCER = Drive("sun", "ring 2", "ring 1")
 BUILT = wolfrom(25, 27, 79, 24, 76)

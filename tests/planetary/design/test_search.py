@@ -13,7 +13,7 @@ from tol3d.apps.design.families import COMPOUND, SIMPLE, WOLFROM, Teeth
 from tol3d.apps.design.search import Found, Wish, find, teeth_text
 from tol3d.apps.design.shifted_set import Limits
 from tol3d.errors import GeometryError
-from tol3d.planetary import ToothSet, compound, simple, wolfrom
+from tol3d.gearing.planetary import ToothSet, compound, simple, wolfrom
 
 ALPHA = math.radians(20)
 EVERY = 1000

@@ -11,7 +11,7 @@ from oracles.placed_planets import off_mesh, placed
 from planetary_sets import working_radii
 
 from tol3d.errors import GeometryError
-from tol3d.planetary import CARRIER, CentralMesh, ToothSet, compound, simple, wolfrom
+from tol3d.gearing.planetary import CARRIER, CentralMesh, ToothSet, compound, simple, wolfrom
 
 TEETH = st.integers(5, 40)
 

@@ -7,7 +7,7 @@ planet     a gear on a carrier
 
 from typing import Final
 
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 from toys.drives.belt import BeltSpec, PulleyOffsetSpec, SpanSpec
 from toys.drives.coupling import CouplingSpec, JawWearSpec
 from toys.drives.planet import PlanetPlaySpec, PlanetSpec

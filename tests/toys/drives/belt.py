@@ -14,9 +14,9 @@ from tol3d.gearing.grammar.parts import ShaftReference
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import LinkToleranceSpec, Meaning
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
 from tol3d.scene import Scene
+from tol3d.scene.bases import Length
+from tol3d.scene.entry import Contradiction, Reference
 from tol3d.scene.name import Name
-from tol3d.scene.part import Length
-from tol3d.scene.reference import Contradiction, Reference
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from tol3d.gearing.grammar.moves import LinkSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import LinkToleranceSpec
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
 from tol3d.scene import Scene
-from tol3d.scene.part import Length
+from tol3d.scene.bases import Length
 
 
 @dataclass(frozen=True, kw_only=True)

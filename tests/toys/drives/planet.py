@@ -13,9 +13,9 @@ from tol3d.gearing.grammar.parts import ShaftReference
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import LinkToleranceSpec
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
 from tol3d.scene import Scene
+from tol3d.scene.bases import Length
+from tol3d.scene.entry import Reference
 from tol3d.scene.name import Name
-from tol3d.scene.part import Length
-from tol3d.scene.reference import Reference
 from tol3d.units import Dimension
 
 

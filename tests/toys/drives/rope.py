@@ -15,14 +15,12 @@ from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.report.body import Body, Surface
 from tol3d.report.page import PageItem, line
 from tol3d.scene import Scene
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.bases import Length, MoveSpec, ToleranceSpec
+from tol3d.scene.entry import Reference
 from tol3d.scene.name import Name
-from tol3d.scene.part import Length
-from tol3d.scene.reference import Reference
-from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Scalar
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.draw import Scalar
+from tol3d.study.system.mechanism import Mechanism
 
 Array = np.ndarray
 

@@ -5,7 +5,7 @@ power       deviations that crowd towards the upper limit, as a wearing tool mak
 
 from typing import Final
 
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 from toys.laws.power import PowerSpec
 
 LAWS: Final = Mechanism(name="laws", distributions=(PowerSpec,), requires=("jsonschema",))

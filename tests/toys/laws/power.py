@@ -6,9 +6,9 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from tol3d.distributions import Distribution, DistributionSpec
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
+from tol3d.statistics.distributions import Distribution, DistributionSpec
 from tol3d.units import Quantity
 
 

@@ -11,7 +11,7 @@ showing     bodies, a picture, a table
 
 from typing import Final
 
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 from toys.parabola import grammar
 
 PARABOLA: Final = Mechanism(

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from tol3d.solids import BuiltShape
+from tol3d.cad.solids import BuiltShape
 
 
 @dataclass(frozen=True)

@@ -5,17 +5,14 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.scene.measure import LengthLimit, MeasureSpec, Take
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.bases import Length, LengthLimit, MeasureSpec, MoveSpec, PartSpec, Take, ToleranceSpec
+from tol3d.scene.entry import Reference
 from tol3d.scene.name import Name
 from tol3d.scene.options import StudyOptions
-from tol3d.scene.part import Length, PartSpec
 from tol3d.scene.place import KeyPath
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.figures import Percent
-from tol3d.scene.reference import Reference
 from tol3d.scene.schema import Scene
-from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.strict import Strict
 from tol3d.units import Dimension, Of, Quantity
 

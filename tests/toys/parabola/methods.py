@@ -6,11 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.system.measure import Measure
-from tol3d.system.method import Answers
-from tol3d.system.stated import component_slices
-from tol3d.system.system import System
-from tol3d.system.trials import Trials
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.method import Answers
+from tol3d.study.system.system import System
+from tol3d.study.system.trials import Trials, component_slices
 from toys.parabola.springs import LOST_LEVER, Room, Springs, coil_weights, own_measure
 
 Array = NDArray[np.float64]

@@ -14,20 +14,20 @@ from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, line
 from tol3d.report.presenter import Draw, FurtherRow, View, Which
 from tol3d.report.system_check import system_blocks
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.shows import Shows
-from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, replay, replayed, simulation_again
-from tol3d.system.stated import mean_build, nominal_build
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.shows import Shows
+from tol3d.study.runs.worst import worst_trial
+from tol3d.study.system.trials import mean_build, nominal_build
 from toys.parabola.bar import Bar
 from toys.parabola.springs import Springs
 from toys.parabola.summary import TermsOfRun
 from toys.parabola.system import Lifted, ParabolaSystem
 
 if TYPE_CHECKING:
-    from tol3d.runs.run import Run
-    from tol3d.runs.summary.run import RunSummary
-    from tol3d.study.simulation import Simulation
+    from tol3d.study.runs.run import Run
+    from tol3d.study.runs.summary.run import RunSummary
+    from tol3d.study.trials.simulation import Simulation
 
 SIDE = 5.0  # mm
 DEFLECTION = 0.01  # mm; of flat faces there is none

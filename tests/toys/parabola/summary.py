@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Final, Literal
 
-from tol3d.runs.summary.kinds import SummaryKinds
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.values import LEFT_OUT, Known, Label, Maybe, Number, Section
+from tol3d.study.runs.summary.kinds import SummaryKinds
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.values import LEFT_OUT, Known, Label, Maybe, Number, Section
 
 PRESENTER: Final = "toys.parabola.showing"
 

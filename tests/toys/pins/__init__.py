@@ -8,7 +8,7 @@ and where the disc may slide is what two load paths leave, which is a linear pro
 
 from typing import Final
 
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 from toys.pins import grammar
 
 PINS: Final = Mechanism(

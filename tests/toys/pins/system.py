@@ -7,15 +7,15 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.distributions import Distribution
 from tol3d.scene import Scene
-from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.system.draw import Each, Planar
-from tol3d.system.measure import Measure
-from tol3d.system.method import Answers, Method
-from tol3d.system.plain import PlainSystem, contributors_of, measures_of
-from tol3d.system.statuses import Statuses
-from tol3d.system.trials import Trials
+from tol3d.scene.bases import ToleranceSpec
+from tol3d.statistics.distributions import Distribution
+from tol3d.study.system.draw import Each, Planar
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.method import Answers, Method
+from tol3d.study.system.outcome import Statuses
+from tol3d.study.system.plain import PlainSystem, contributors_of, measures_of
+from tol3d.study.system.trials import Trials
 from toys.pins.grammar import DiscSpec, OffCentreSpec, PinSpec, PlateSpec
 
 Array = NDArray[np.float64]

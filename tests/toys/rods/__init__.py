@@ -7,7 +7,7 @@ contributors that read others.
 
 from typing import Final
 
-from tol3d.system.mechanism import Mechanism
+from tol3d.study.system.mechanism import Mechanism
 from toys.rods import grammar
 
 RODS: Final = Mechanism(

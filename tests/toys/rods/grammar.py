@@ -2,12 +2,10 @@
 
 from typing import ClassVar, Literal
 
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.bases import Length, MoveSpec, PartSpec, ToleranceSpec
+from tol3d.scene.entry import Reference
 from tol3d.scene.name import Name
-from tol3d.scene.part import Length, PartSpec
-from tol3d.scene.reference import Reference
-from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.system.plain import LengthSpec
+from tol3d.study.system.plain import LengthSpec
 
 
 class RodSpec(PartSpec):

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.distributions import Distribution
 from tol3d.scene import Scene
-from tol3d.system.closed_form import ClosedForm, Share
-from tol3d.system.dependent import Given
-from tol3d.system.draw import Draw, Scalar, Values
-from tol3d.system.measure import Measure
-from tol3d.system.plain import PlainContributor, PlainSystem, measures_of
-from tol3d.system.trials import Trials
+from tol3d.statistics.distributions import Distribution
+from tol3d.study.system.closed_form import ClosedForm, Share
+from tol3d.study.system.dependent import Given
+from tol3d.study.system.draw import Draw, Scalar, Values
+from tol3d.study.system.measure import Measure
+from tol3d.study.system.plain import PlainContributor, PlainSystem, measures_of
+from tol3d.study.system.trials import Trials
 from toys.rods.grammar import LengthToleranceSpec, MarkSpec, RodSpec, TipSpec
 
 Array = NDArray[np.float64]

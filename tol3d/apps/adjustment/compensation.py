@@ -5,25 +5,145 @@ good for it by a turn that is known beforehand: that of the batch's mean builds,
 of which only the maximum is known is left out of it, as in Jiang et al. 2024, section 4; it remains whole.
 
 Angles here are in minutes of arc and tips in mm, as in columns and in summary.json.
+
+The turn of the motor that makes good for the mean lost motion of a train, and the sum of highs that it leaves.
+
+Angles are in minutes of arc, as in columns and in summary.json.
+
+A tip over the swing of its arm: its error with and without the motor's correction, and which flanks work.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tol3d.apps.adjustment.compensated_swing import Swing, swing_of
-from tol3d.apps.adjustment.correction import Correction, at_shaft, corrections_of
 from tol3d.apps.adjustment.robots import Robots, State, left_of_the_mean, simulated_robots
 from tol3d.errors import InputError
-from tol3d.gearing import AnyStage, Train, TrainPlay, gears_alone, shafts_in_bores, trains_of
+from tol3d.gearing import AnyStage, Ends, Train, TrainPlay, TrainSwing, gears_alone, shafts_in_bores, trains_of
+from tol3d.gears import Flank
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene, hint
 from tol3d.simulate import Overrides, simulation_of
 from tol3d.study import AS_WRITTEN, Simulation
 from tol3d.units import ARCMIN
+
+
+@dataclass(frozen=True)
+class Correction:
+    """The motor's correction by one column: a method, the closed form or a publication; None for missing values.
+
+    Args:
+        means: each compensated link's own lost motion, at its driven shaft [arcmin].
+        motor: turn of the motor that makes good for them together [arcmin].
+        before: sum of all stages' highs at the shaft that is read [arcmin].
+        left: sum of the excess of their highs over their means, and of the uncompensated highs [arcmin].
+        left_of: excess of each compensated link's own high over its mean, at its driven shaft [arcmin].
+    """
+
+    means: Mapping[str, float | None]
+    motor: float | None
+    before: float | None
+    left: float | None
+    left_of: Mapping[str, float | None]
+
+
+def corrections_of(
+    play: TrainPlay, compensated: Sequence[AnyStage], robots: Robots
+) -> Iterator[tuple[str, Correction]]:
+    """Corrections by the closed form, by each method, and by every publication of all meshes of the train."""
+    for column, ends in play.ends(robots.played):
+        yield column, _correction(play, compensated, ends)
+
+
+def _correction(play: TrainPlay, compensated: Sequence[AnyStage], ends: Mapping[str, Ends]) -> Correction:
+    means = {stage.link: ends[stage.link].mean for stage in compensated}
+    turns = {stage.link: play.motor_turns(stage) for stage in compensated}
+    highs = [(stage.factor, ends[stage.link].high_3sigma) for stage in play.stages]
+    kept = [(stage.factor, 0.0 if stage not in compensated else means[stage.link]) for stage in play.stages]
+    before, known = _total(highs), _total(kept)
+    return Correction(
+        means=means,
+        motor=_total([(turns[link], mean) for link, mean in means.items()]),
+        before=before,
+        left=None if before is None or known is None else before - known,
+        left_of={link: _total([(1.0, ends[link].high_3sigma), (-1.0, mean)]) for link, mean in means.items()},
+    )
+
+
+def _total(parts: Sequence[tuple[float, float | None]]) -> float | None:
+    """The sum of factor times value; None where a value is missing."""
+    known = [factor * value for factor, value in parts if value is not None]
+    return sum(known) if len(known) == len(parts) else None
+
+
+def at_shaft(compensated: Sequence[AnyStage], correction: Correction) -> float:
+    """Turn of the output shaft due to the motor's correction [arcmin]."""
+    return _total([(stage.factor, correction.means[stage.link]) for stage in compensated]) or 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Swing:
+    """Errors of the tip over the output's angles.
+
+    Args:
+        measure: the scene's.
+        output: the output's angles [rad], (positions,).
+        turned: where the load acts on the other side than at the start, (positions,).
+        jumps: the output's angles where it changes side [rad].
+        curves: the tip's error with its sign by method and state, (robots, positions) [mm].
+        flanks: by mesh of the way from the held shaft: its driver's flank that works at the start, and the other.
+    """
+
+    measure: str
+    output: Array
+    turned: NDArray[np.bool_]
+    jumps: tuple[float, ...]
+    curves: Mapping[str, Mapping[State, Array]]
+    flanks: Mapping[str, tuple[Flank, Flank]]
+
+    @property
+    def first_turned(self) -> int:
+        """The first position behind the first change of side."""
+        return int(np.argmax(self.turned))
+
+
+def swing_of(play: TrainPlay, robots: Robots, batch: Mapping[str, float]) -> Swing | None:
+    """The first swing that the scene measures, or the usual one, of the same robots; None where the load stays.
+
+    Args:
+        play: lost motion of the train.
+        robots: with their own means.
+        batch: mean of what is compensated, by method [arcmin].
+    """
+    found = play.swing()
+    if found is None:
+        return None
+    lost = found.lost(tuple(batch), robots.count)
+    seated = robots.seated & ~np.any([np.isnan(values).any(axis=1) for values in lost.values()], axis=0)
+    return Swing(
+        measure=found.measure.name,
+        output=found.output,
+        turned=found.turned,
+        jumps=found.jumps,
+        curves={
+            name: _curves(found, name, lost[name][seated], robots.own[name][seated], batch[name]) for name in batch
+        },
+        flanks=dict(found.flanks()),
+    )
+
+
+def _curves(swing: TrainSwing, method: str, lost: Array, own: Array, batch: float) -> Mapping[State, Array]:
+    """Tip errors [mm] of lost motions (robots, positions) [arcmin], less the motor's correction."""
+    return {
+        "before": swing.tip_error(method, lost),
+        "batch": swing.tip_error(method, lost - batch),
+        "robot": swing.tip_error(method, lost - own[:, None]),
+    }
+
 
 Unit = Literal["mm", "arcmin"]
 

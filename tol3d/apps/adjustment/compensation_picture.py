@@ -7,8 +7,7 @@ from typing import Final
 import numpy as np
 from matplotlib.figure import Figure
 
-from tol3d.apps.adjustment.compensated_swing import Swing
-from tol3d.apps.adjustment.compensation import Compensation, Unit
+from tol3d.apps.adjustment.compensation import Compensation, Swing, Unit
 from tol3d.apps.adjustment.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS, Spread
 from tol3d.apps.adjustment.robots import STATES, State
 from tol3d.numerics.arrays import Array

@@ -8,17 +8,15 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.apps.adjustment.compensated_swing import Swing
-from tol3d.apps.adjustment.compensation import Compensation, Unit
-from tol3d.apps.adjustment.correction import Correction
+from tol3d.apps.adjustment.compensation import Compensation, Correction, Swing, Unit
 from tol3d.apps.adjustment.robots import STATES, State
-from tol3d.distributions import HIGH_PROBABILITY, LOW_PROBABILITY
 from tol3d.gearing import CLOSED_FORM
 from tol3d.gears import LEFT, Flank
 from tol3d.numerics.arrays import Array
 from tol3d.report import NOTHING, given_text, tip_mm, value_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Table, line, note, page
-from tol3d.statistics import Moments
+from tol3d.statistics.distributions import HIGH_PROBABILITY, LOW_PROBABILITY
+from tol3d.statistics.estimates import Moments
 
 
 @dataclass(frozen=True, eq=False)

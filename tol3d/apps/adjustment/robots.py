@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing import AnyStage, Played, TrainPlay
 from tol3d.numerics.arrays import Array
-from tol3d.samplers import MonteCarlo, Stream
+from tol3d.statistics.samplers import MonteCarlo, Stream
 
 State = Literal["before", "batch", "robot"]
 

@@ -8,7 +8,10 @@ from math import sin
 from typing import Final, Literal, get_args
 
 from tol3d.apps.adjustment.stock import NO_SHIM, tidy
-from tol3d.distributions import (
+from tol3d.errors import InputError
+from tol3d.gearing import BevelMeshSpec, Mesh, NormalBacklashSpec, ShimSpec
+from tol3d.scene import MeasureEntry, Scene, hint, with_tolerances
+from tol3d.statistics.distributions import (
     LOW_PROBABILITY,
     ConstantSpec,
     DistributionSpec,
@@ -17,10 +20,7 @@ from tol3d.distributions import (
     TruncatedNormalSpec,
     UniformSpec,
 )
-from tol3d.errors import InputError
-from tol3d.gearing import BevelMeshSpec, Mesh, NormalBacklashSpec, ShimSpec
-from tol3d.runs import MeasureSummary, Sample
-from tol3d.scene import MeasureEntry, Scene, hint, with_tolerances
+from tol3d.study.runs import MeasureSummary, Sample
 from tol3d.units import FACTORS, Quantity
 
 MOVED_FIELDS: Final[Mapping[type[DistributionSpec], tuple[str, ...]]] = {

@@ -10,7 +10,7 @@ from tol3d.apps.design.optimum import Goal
 from tol3d.apps.design.search import Candidate, Found, Wish, in_order, teeth_text
 from tol3d.apps.design.shifted_set import step_name
 from tol3d.apps.design.working_mesh import WorkingMesh, mesh_efficiency
-from tol3d.planetary import (
+from tol3d.gearing.planetary import (
     CARRIER,
     MeshEfficiencies,
     Sharing,
@@ -21,7 +21,7 @@ from tol3d.planetary import (
 )
 from tol3d.report import declared_table, side_by_side
 from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, title
-from tol3d.runs import Computed, Shows
+from tol3d.study.runs import Computed, Shows
 from tol3d.units import Quantity
 
 FACE_WIDTH: Final = 10.0  # modules, until the user says otherwise

@@ -79,9 +79,9 @@ def design(
     from tol3d.apps.design.search import Wish, find
     from tol3d.apps.design.shifted_set import Limits
     from tol3d.apps.design.working_mesh import BasicRack
+    from tol3d.cli.quantity import stated
     from tol3d.errors import InputError
-    from tol3d.quantity import stated
-    from tol3d.runs import write_texts
+    from tol3d.study.runs import write_texts
 
     wish = Wish(
         family=FAMILIES[family],

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
+from tol3d.gearing.planetary import CARRIER, Drive, ToothSet, compound, simple, wolfrom
 from tol3d.numerics.arrays import Array, Places
-from tol3d.planetary import CARRIER, Drive, ToothSet, compound, simple, wolfrom
 
 RATIO_RTOL: Final = 1e-12  # a ratio at the very end of its tolerance counts, however its decimals are rounded
 MOST_SETS: Final = 20_000  # with one ratio; they are judged one by one

@@ -18,8 +18,8 @@ from scipy.optimize import minimize, minimize_scalar
 from tol3d.apps.design.shifted_set import PLANET_GAP, Limits, Margin, ShiftedSet, least_shift, tip_gap
 from tol3d.apps.design.working_mesh import BasicRack, shift_sum
 from tol3d.errors import GeometryError
+from tol3d.gearing.planetary import Drive, ToothSet, efficiency
 from tol3d.numerics.arrays import Array
-from tol3d.planetary import Drive, ToothSet, efficiency
 
 LEAST_WORKING_ANGLE: Final = math.radians(12)  # below it paths of contact leave the involutes of any usual gear
 LARGEST_WORKING_ANGLE: Final = math.radians(32)

@@ -9,7 +9,7 @@ from tol3d.apps.design.optimum import Goal, LimitsNotKeptError, Task, best_shift
 from tol3d.apps.design.shifted_set import PLANET_GAP, Limits, ShiftedSet, refuse_interference, step_name
 from tol3d.apps.design.working_mesh import BasicRack
 from tol3d.errors import GeometryError
-from tol3d.planetary import ToothSet
+from tol3d.gearing.planetary import ToothSet
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def find(wish: Wish, most: int = 10) -> Found:
 def teeth_text(teeth: ToothSet) -> str:
     """Teeth of a set in the order of its family: 25/27/79/24/76.
 
-    >>> from tol3d.planetary.model.tooth_set import wolfrom
+    >>> from tol3d.gearing.planetary.model.tooth_set import wolfrom
     >>> teeth_text(wolfrom(25, 27, 79, 24, 76))
     '25/27/79/24/76'
     """

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from tol3d.apps.design.working_mesh import BasicRack, WorkingMesh, mesh_efficiency, shift_sum
 from tol3d.errors import GeometryError
+from tol3d.gearing.planetary import Sharing, ToothSet
 from tol3d.gears import RACK_ADDENDUM, InternalGear, InternalPair, SpurGear, SpurPair
-from tol3d.planetary import Sharing, ToothSet
 
 
 def tip_gap(centre_distance: float, planets: int, largest_tip_radius: float) -> float:

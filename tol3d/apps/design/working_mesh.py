@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import Final
 
 from tol3d.errors import GeometryError
+from tol3d.gearing.planetary import CentralMesh, Sharing, shared_sliding_factor, sliding_factor
 from tol3d.gears import involute
-from tol3d.planetary import CentralMesh, Sharing, shared_sliding_factor, sliding_factor
 
 ISO53_ADDENDUM: Final = 1.0
 ISO53_DEDENDUM: Final = 1.25

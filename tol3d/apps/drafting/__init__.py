@@ -5,13 +5,12 @@ from typing import TYPE_CHECKING
 from tol3d.import_path import lazy_names
 
 if TYPE_CHECKING:
-    from tol3d.apps.drafting.checked import scene_from
-    from tol3d.apps.drafting.draft import Draft, Seat
+    from tol3d.apps.drafting.draft import Draft, Seat, scene_from
 
 _HOMES = {
     "Draft": "tol3d.apps.drafting.draft",
     "Seat": "tol3d.apps.drafting.draft",
-    "scene_from": "tol3d.apps.drafting.checked",
+    "scene_from": "tol3d.apps.drafting.draft",
 }
 
 __all__ = ["Draft", "Seat", "scene_from"]

@@ -34,7 +34,7 @@ def new(
     """Write a scene to start your own from, which runs: of a kind of system, or of STEP files; alone list the kinds."""
     from tol3d.errors import InputError
     from tol3d.kinds import all_mechanisms
-    from tol3d.system import starter_lines, starter_named
+    from tol3d.study.system import starter_lines, starter_named
 
     words = system or []
     if start is not None:
@@ -61,8 +61,8 @@ def _draft(words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out
     from tol3d.errors import InputError, unwritable
     from tol3d.files import read_file
     from tol3d.kinds import all_mechanisms
-    from tol3d.runs import write_whole
-    from tol3d.system import starters_of
+    from tol3d.study.runs import write_whole
+    from tol3d.study.system import starters_of
 
     kinds = {starter.name for mechanism in all_mechanisms() for starter in starters_of(mechanism)}
     if both := next((own for own in words if own in kinds and not Path(own).exists()), None):
@@ -107,7 +107,7 @@ def _refuse_there(path: Path, force: bool) -> None:
 def _write(path: Path, text: str, force: bool) -> None:
     """Write a new scene and say what to do with it."""
     from tol3d.errors import unwritable
-    from tol3d.runs import write_whole
+    from tol3d.study.runs import write_whole
 
     _refuse_there(path, force)
     try:

@@ -1,7 +1,12 @@
-"""A scene from STEP files: parts, their drawings, moves and measures, as a text that a person edits."""
+"""A scene from STEP files: parts, their drawings, moves and measures, as a text that a person edits.
 
+A drafted scene checked as `tol3d check` does, so that it runs as it is written.
+"""
+
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 from tol3d.apps.drafting.drawing import source
@@ -9,12 +14,13 @@ from tol3d.apps.drafting.entry import LAW as LAW_HERE
 from tol3d.apps.drafting.entry import Entry, Scene, Wording
 from tol3d.apps.drafting.fixture import fixture
 from tol3d.apps.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
-from tol3d.apps.drafting.touching import ALONE, between, moves
+from tol3d.apps.drafting.touching_faces import ALONE, between, moves
 from tol3d.apps.drafting.words import Names, cleaned, comment, length, scalar
+from tol3d.cad.step import FoundFeature, StepError, shown
 from tol3d.errors import InputError, SceneError
 from tol3d.files import FileContent
 from tol3d.scene import hint
-from tol3d.step import FoundFeature, StepError, shown
+from tol3d.simulate import Overrides, load, simulation_of
 
 LAW: Final = "{kind: normal}"
 GUESS: Final = 0.1  # mm; zones where no file states any
@@ -286,3 +292,25 @@ def entry_of(problem: str, by_line: dict[int, Entry]) -> Entry | None:
         return by_line[int(place)]
     named = [own for own in dict.fromkeys(by_line.values()) if f"{own.section}.{own.name.strip(chr(34))}" in problem]
     return named[0] if named else None
+
+
+SCENE = "scene.yaml"
+
+
+def scene_from(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> tuple[str, Draft]:
+    """A scene from STEP files that `tol3d check` accepts and `tol3d run` runs, and its draft.
+
+    Raises:
+        InputError: a file cannot be read, or a seat is of no part or face.
+    """
+    drafted = draft(contents, seats)
+    with tempfile.TemporaryDirectory(prefix="tol3d-new-") as made:
+        folder = Path(made)
+        for own in contents:
+            (folder / own.path.name).write_bytes(own.content)
+
+        def check(text: str) -> None:
+            (folder / SCENE).write_text(text, encoding="utf-8")
+            simulation_of(load(folder / SCENE), Overrides())
+
+        return settled(drafted, check), drafted

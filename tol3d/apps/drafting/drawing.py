@@ -7,14 +7,22 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.apps.drafting.dimensions import sized, take_distance, take_size
-from tol3d.apps.drafting.drawn import Drawn
+from tol3d.apps.drafting.drawn_part import (
+    FORMS,
+    SMALLEST_ZONE,
+    SQUARE,
+    Drawn,
+    modifier_of,
+    piece,
+    sized,
+    take_distance,
+    take_size,
+    zone,
+)
 from tol3d.apps.drafting.entry import LAW, Entry, Wording
 from tol3d.apps.drafting.features import USABLE, Group
 from tol3d.apps.drafting.words import comment, direction, length, scalar
-from tol3d.apps.drafting.zones import FORMS, SMALLEST_ZONE, SQUARE, modifier_of, piece, zone
-from tol3d.numerics.arrays import Array
-from tol3d.step import (
+from tol3d.cad.step import (
     LOCATIONS,
     MATERIAL,
     ORIENTATIONS,
@@ -28,6 +36,7 @@ from tol3d.step import (
     frame,
     shape_of,
 )
+from tol3d.numerics.arrays import Array
 
 INSPECTED: Final = frozenset(("inspected_position", "inspected_orientation"))
 NOTHING: Final = "left out"

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from tol3d.apps.drafting.words import UNNAMEABLE_FEATURE, Names, direction, length, place, scalar
+from tol3d.cad.step import FoundFeature, Selector, StepError, StepPart, Triple, by_place, line_of, selected, shown
 from tol3d.numerics.arrays import Array
-from tol3d.step import FoundFeature, Selector, StepError, StepPart, Triple, by_place, line_of, selected, shown
 
 USABLE: Final = frozenset(("plane", "hole", "pin", "fillet", "round", "cone", "ball", "socket"))
 SHORTEST_NAMES: Final = 40  # characters of a PMI name by which a feature is selected; longer ones are data

@@ -10,8 +10,8 @@ from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.features import Group
 from tol3d.apps.drafting.parts import DraftedPart
 from tol3d.apps.drafting.words import Names, direction, length, place, scalar
+from tol3d.cad.step import FoundFeature
 from tol3d.numerics.arrays import Array
-from tol3d.step import FoundFeature
 
 PADS: Final = {3: ((-0.4, -0.4), (0.4, -0.4), (0.0, 0.4)), 2: ((-0.4, 0.0), (0.4, 0.0)), 1: ((0.0, 0.0),)}
 """Positions of pads, in extents of their face, by number of pads."""

@@ -10,9 +10,7 @@ from tol3d.apps.drafting.drawing import Drawing
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.features import Features
 from tol3d.apps.drafting.words import Names, across, comment, direction, place, scalar
-from tol3d.files import FileContent
-from tol3d.numerics.arrays import Array
-from tol3d.step import (
+from tol3d.cad.step import (
     FoundFeature,
     Meanings,
     StepError,
@@ -23,6 +21,8 @@ from tol3d.step import (
     read_step_text,
     surfaces_of,
 )
+from tol3d.files import FileContent
+from tol3d.numerics.arrays import Array
 
 STILL: Final = 1e-12
 MOST_PARTS: Final = 200  # of one scene that a person reads

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
+from tol3d.cad.step import LONGEST_SHOWN
 from tol3d.numerics.arrays import Array
-from tol3d.step import LONGEST_SHOWN
 
 PLAIN: Final = re.compile(r"[A-Za-z](?:[A-Za-z0-9_.()+ -]*[A-Za-z0-9_)])?")
 """Texts that YAML reads as they stand, but for its own words."""

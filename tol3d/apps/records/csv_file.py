@@ -11,9 +11,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pc
 
+from tol3d.cli.quantity import ANGLES, TORQUES
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.quantity import ANGLES, TORQUES
 
 NAMED: Final = re.compile(r"\s*(?P<name>[^\[\]()]+?)\s*(?:[\[(]\s*(?P<unit>[^\])]*?)\s*[\])])?\s*")
 BLOCK_BYTES: Final = 2**21  # 75 000 rows of two angles; pyarrow reads up to 32 blocks ahead

@@ -14,7 +14,7 @@ from tol3d.apps.records.spectrum import with_tooth_mesh
 from tol3d.numerics.arrays import Array
 from tol3d.report import save_charts, spanned
 from tol3d.report.chart import Axis, Band, Chart, Charts, Line, Mark, Panel, Points, Role, Series
-from tol3d.runs.csv_text import csv_text
+from tol3d.study.runs.csv_text import csv_text
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 from tol3d.apps.records.pair import ARCSEC, TURN, ClosedForm, Side, Specimen, Unit
 from tol3d.errors import InputError, unwritable
 from tol3d.numerics.arrays import Array
-from tol3d.runs import made_folder, write_by
+from tol3d.study.runs import made_folder, write_by
 
 
 @dataclass(frozen=True)

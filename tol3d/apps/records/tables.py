@@ -14,7 +14,7 @@ from tol3d.apps.records.scene_mesh import SceneMesh
 from tol3d.apps.records.summary import UNITS, alone_figures
 from tol3d.report import NOTHING, declared_table
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, titled, warning
-from tol3d.runs import Computed, Shows
+from tol3d.study.runs import Computed, Shows
 
 WORDS: Final = {
     "e1": "e1, eccentricity of the driver",

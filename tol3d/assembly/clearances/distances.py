@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.pair import Level, SolidPair, relative_pose
 from tol3d.assembly.model.statuses import OK, OVERLAP
+from tol3d.cad.solids.distance import Integers, Nearest, NearestPoints, Surface, mesh_surface, overlapping, put
 from tol3d.numerics.arrays import Array
-from tol3d.solids.distance import Integers, Nearest, NearestPoints, Surface, mesh_surface, overlapping, put
 
 Codes = NDArray[np.int8]
 

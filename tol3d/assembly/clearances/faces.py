@@ -14,9 +14,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.cad.solids import BuiltShape, DisplayMesh, display_mesh
 from tol3d.errors import GeometryError
 from tol3d.numerics.arrays import Array
-from tol3d.solids import BuiltShape, DisplayMesh, display_mesh
 
 Bools = NDArray[np.bool_]
 

@@ -14,9 +14,9 @@ from tol3d.assembly.clearances.distances import Asked, PairDistances, is_inside,
 from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, inverse, solid_pair
 from tol3d.assembly.model.measures import Facing
+from tol3d.cad.solids.distance import Nearest, NearestPoints, put
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array
-from tol3d.solids.distance import Nearest, NearestPoints, put
 
 NEARER: Final = 0.1
 """Fraction of the chord error by which a pair must be nearer than the known ones to be kept."""

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.faces import SolidMesh, nearby, needed, solid_mesh
+from tol3d.cad.solids import BuiltShape
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array
-from tol3d.solids import BuiltShape
 
 Integers = NDArray[np.int64]
 

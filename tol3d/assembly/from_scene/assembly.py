@@ -1,26 +1,31 @@
-"""The assembly that a scene means, its contributors and its measures."""
+"""The assembly that a scene means, its contributors and its measures.
+
+Tolerances that act not only by their deviations: also by gauges, by inspections, by reducing another zone.
+"""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tol3d.assembly.from_scene.boundaries import gauge_shifts, on_gauges
 from tol3d.assembly.from_scene.contact_points import contact_points
 from tol3d.assembly.from_scene.contributors import effects_of
-from tol3d.assembly.from_scene.datums import frames_of, in_order
+from tol3d.assembly.from_scene.datums import DatumFrames, frames_of, in_order
+from tol3d.assembly.from_scene.effects import Effects
 from tol3d.assembly.from_scene.features import features_of, twins_of
-from tol3d.assembly.from_scene.held import with_held
 from tol3d.assembly.from_scene.measures import measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
 from tol3d.assembly.from_scene.setting import Understood
-from tol3d.assembly.from_scene.warming import growth
+from tol3d.assembly.from_scene.thermal_growth import growth
 from tol3d.assembly.grammar.checks import read_at
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.model import Assembly, DatumFrame, Feature, Part
 from tol3d.assembly.picking.kept_picks import shapes_of
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-from tol3d.system.plain import PlainContributor, PlainMeasure
+from tol3d.study.system.plain import PlainContributor, PlainMeasure
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,3 +101,33 @@ def parts_of(
         Part(name, poses[name], tuple(its_features[name]), tuple(its_frames[name]), solids.get(name))
         for name in scene.of(SolidSpec)
     )
+
+
+def with_held(drawing: Drawing, effects: Effects, frames: DatumFrames) -> Effects:
+    """Effects whose contributors say what else their tolerances act on: gauges, inspections, reduced zones."""
+    scene, held = drawing.scene, dict[str, str]()
+    inspected = {
+        feature
+        for name, names in named_by(scene).items()
+        if getattr(scene.measures[name], "modifier", None) is not None
+        for feature in names
+    }
+    gauged = {
+        f"{frames.made[name].part}.{feature}"
+        for name, datums in frames.specs.items()
+        for datum in datums
+        if datum.gauge is not None
+        for feature in datum.features
+    }
+    for own in drawing.stated:
+        if isinstance(own, str):
+            continue
+        sized = isinstance(own.spec, SizeSpec) and own.spec.limits is None
+        if own.feature in gauged and (sized or isinstance(own.spec, LocationSpec | OrientationSpec)):
+            held[own.name] = "sizes a gauge of a datum"
+        elif own.feature in inspected and sized:
+            held[own.name] = "sizes the zone that a measure inspects"
+        elif isinstance(own.spec, FormSpec | OrientationSpec) and drawing.of(own.feature, LocationSpec):
+            held[own.name] = "narrows another zone"
+    marked = (replace(own, held=held[own.name]) if own.name in held else own for own in effects.contributors)
+    return replace(effects, contributors=tuple(marked))

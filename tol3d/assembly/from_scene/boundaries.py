@@ -19,7 +19,7 @@ from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
 from tol3d.assembly.zones.float_draw import SHIFT_AND_TURN, FloatDraw, GaugeShift, Leaning
 from tol3d.numerics.arrays import Array
-from tol3d.system.plain import PlainContributor
+from tol3d.study.system.plain import PlainContributor
 
 ANY = 1e3
 """mm; a gauge's clearance grows with the size, beyond the drawing's limits too."""

@@ -15,12 +15,12 @@ from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec, is_of_round_surface
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.zones import EnvelopedForm
-from tol3d.distributions import Distribution
 from tol3d.import_path import named
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-from tol3d.system.draw import Draw, Each, Scalar
-from tol3d.system.plain import PlainContributor
+from tol3d.statistics.distributions import Distribution
+from tol3d.study.system.draw import Draw, Each, Scalar
+from tol3d.study.system.plain import PlainContributor
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any, Final, Literal
 
 from tol3d.assembly.model import Contribution
 from tol3d.numerics.arrays import Array
-from tol3d.system.plain import PlainContributor
+from tol3d.study.system.plain import PlainContributor
 
 Touch = tuple[str, str]
 """A move, and one of its pairs by the name that locators have."""

@@ -5,8 +5,8 @@ from typing import Final
 from tol3d.assembly.grammar.zone import LawSpec, ProcessLawSpec
 from tol3d.assembly.zones import Confined, Process, Zone, normal_in, ring_in, uniform_in
 from tol3d.assembly.zones.centred import Centred
-from tol3d.distributions import Distribution, TruncatedNormal, Uniform
 from tol3d.files import Files
+from tol3d.statistics.distributions import Distribution, TruncatedNormal, Uniform
 
 TILTS: Final = ("rise x", "rise y")
 """Components of planes that a process spreads about 0, whatever its mean: an offset does not tilt a face."""

@@ -25,7 +25,7 @@ from tol3d.assembly.model import Measured
 from tol3d.assembly.model.datum_frame import MaterialBonus
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-from tol3d.system.plain import UNITS, PlainMeasure, measures_of
+from tol3d.study.system.plain import UNITS, PlainMeasure, measures_of
 
 
 def measured_of(drawing: Drawing) -> Mapping[str, Measured]:

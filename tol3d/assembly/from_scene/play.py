@@ -17,8 +17,8 @@ from tol3d.assembly.model import Bolt, Contribution, Engage, Engagement, Feature
 from tol3d.assembly.zones.float_draw import SHIFT_AND_TURN, FloatDraw, Law
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-from tol3d.system.draw import Scalar
-from tol3d.system.plain import PlainContributor
+from tol3d.study.system.draw import Scalar
+from tol3d.study.system.plain import PlainContributor
 
 FLAT = 1e-6
 """Sine of an angle that is none."""

@@ -19,7 +19,7 @@ from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.tolerances.location import Composite
 from tol3d.assembly.model import Assembly, Feature, Part
-from tol3d.assembly.placing.holding import held_by_datums
+from tol3d.assembly.placing.nominal_constraints import held_by_datums
 from tol3d.assembly.zones import ZoneDraw, catalogue
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene

@@ -1,7 +1,11 @@
-"""Checks across the entries of a scene of an assembly."""
+"""Checks across the entries of a scene of an assembly.
+
+Sizes of features without a tolerance of their own, which take the general one of their scene.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import Use, UsesFeatures, part_of
@@ -9,9 +13,11 @@ from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
-from tol3d.assembly.grammar.moves.forgotten import how_to_place
+from tol3d.assembly.grammar.moves.assembly_move import how_to_place
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.location import ProfileSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
@@ -185,3 +191,20 @@ def _read_too_early(scene: Scene, bodies: Bodies) -> Iterator[Problem]:
                     words = f"expected a move by which {part!r} is placed, got {measure.after!r}"
                     yield ("measures", name, "after"), f"{words}; name a later one"
                     break
+
+
+def general_sizes(scene: Scene) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """A tolerance for each diameter or width stated in numbers, as general tolerance of its nominal size.
+
+    Sizes with a tolerance or a profile of their own keep it; sizes read from a solid are left out.
+    """
+    drawing = Drawing(scene)
+    for part, solid in scene.of(SolidSpec).items():
+        for name, spec in solid.features.items():
+            nominal = getattr(spec, "width" if spec.kind == "slot" else "diameter", None)
+            if spec.kind not in SizeSpec.applies_to or nominal is None:
+                continue
+            own = [f"{part}.{member}" for member in spec.members(name)]
+            if not any(drawing.of(feature, kind) for feature in own for kind in (SizeSpec, ProfileSpec)):
+                law = {"general": scene.general_sizes, "of": str(nominal)}
+                yield f"size of {part} {name}", {"kind": "size", "of": f"{part}.{name}", "distribution": law}

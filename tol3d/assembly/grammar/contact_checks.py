@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, OverPlaySpec
-from tol3d.assembly.grammar.measures.contact import ContactAngleSpec, SurfaceGapSpec
+from tol3d.assembly.grammar.measures.gap import ContactAngleSpec, SurfaceGapSpec
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.model.moves import unfit_surfaces
 from tol3d.scene import Scene

@@ -6,15 +6,14 @@ from typing import Annotated, Any, ClassVar, Final, Literal, Protocol, Self, Typ
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.features.nominal_frame import is_across
-from tol3d.distributions import StatedDistribution
-from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.import_path import is_named
-from tol3d.scene.part import Length
+from tol3d.scene.bases import Length, ToleranceEntry, scaled_law
 from tol3d.scene.place import KeyPath
-from tol3d.scene.tolerance import ToleranceEntry, scaled_law
 from tol3d.scene.vector import Direction
+from tol3d.statistics.distributions import StatedDistribution
+from tol3d.statistics.distributions.base import Stays
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Quantity, shown
 

@@ -13,7 +13,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.numerics.values import Valued
 
 if TYPE_CHECKING:
-    from tol3d.solids.built_shape import BuiltShape
+    from tol3d.cad.solids.built_shape import BuiltShape
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
 from tol3d.import_path import is_named
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.values import Valued
-from tol3d.system.measure import Worse
+from tol3d.study.system.measure import Worse
 
 
 @dataclass(frozen=True, eq=False)

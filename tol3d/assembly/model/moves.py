@@ -46,7 +46,9 @@ class Touch(PartMove):
             in the nominal frame of the first target's part; a contact that would have to pull is lost. None: not asked.
     """
 
-    acts: ClassVar[Acts] = Acts("touch", "touch on", f"{PLACING}.touching:touching", f"{TORSORS}.touching:touched")
+    acts: ClassVar[Acts] = Acts(
+        "touch", "touch on", f"{PLACING}.contact_move:touching", f"{TORSORS}.contact_move:touched"
+    )
 
     contacts: tuple[Contact, ...]
     pressed: Array | None = None
@@ -140,7 +142,7 @@ class Locate(PartMove):
     """
 
     acts: ClassVar[Acts] = Acts(
-        "six contacts", "six contacts on", f"{PLACING}.locating:locating", f"{TORSORS}.mating:located"
+        "six contacts", "six contacts on", f"{PLACING}.locator_move:locating", f"{TORSORS}.mate_move:located"
     )
 
     pairs: tuple[Pair, ...]
@@ -184,7 +186,7 @@ class BestFit(PartMove):
     """
 
     acts: ClassVar[Acts] = Acts(
-        "best fit", "best fit on", f"{PLACING}.best_fitting:best_fitting", f"{TORSORS}.best_fitting:fitted"
+        "best fit", "best fit on", f"{PLACING}.best_fit_move:best_fitting", f"{TORSORS}.best_fit_move:fitted"
     )
 
     fits: tuple[Fit, ...]
@@ -232,7 +234,7 @@ class Mate(PartMove):
     Freedoms that none takes stay as nominal.
     """
 
-    acts: ClassVar[Acts] = Acts("mate", "mate on", f"{PLACING}.mating:mating", f"{TORSORS}.mating:mated")
+    acts: ClassVar[Acts] = Acts("mate", "mate on", f"{PLACING}.mate_move:mating", f"{TORSORS}.mate_move:mated")
 
     relations: tuple[Relation, ...]
 
@@ -263,7 +265,7 @@ class Rest(PartMove):
     """
 
     acts: ClassVar[Acts] = Acts(
-        "rest", "rest on", f"{PLACING}.resting:resting", f"{TORSORS}.resting:rested",
+        "rest", "rest on", f"{PLACING}.rest_move:resting", f"{TORSORS}.rest_move:rested",
         presents="tol3d.assembly.presenting.tables:rest_blocks", rocks=True,
     )  # fmt: skip
 

@@ -125,7 +125,7 @@ class Engage(PartMove):
     """
 
     acts: ClassVar[Acts] = Acts(
-        "play", "play on", f"{PLACING}.engaging:engaging", f"{TORSORS}.engaging:engaged", has_room=True
+        "play", "play on", f"{PLACING}.play_move:engaging", f"{TORSORS}.play_move:engaged", has_room=True
     )
 
     relations: tuple[Relation, ...]

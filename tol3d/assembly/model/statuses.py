@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from tol3d.system.statuses import Statuses
+from tol3d.study.system.outcome import Statuses
 
 STATUSES: Final = Statuses(
     ("ok", "not unique", "no contact", "no build", "singular", "not held"),

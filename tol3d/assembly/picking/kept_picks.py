@@ -14,13 +14,13 @@ from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.feature_spec import FaceKind
 from tol3d.assembly.grammar.parts import SolidSpec, StepSpec, likes
 from tol3d.assembly.picking.step_picks import checked
+from tol3d.cad.solids.built_shape import BuiltShape
+from tol3d.cad.solids.kept_shape import KeptShape, run_program
+from tol3d.cad.solids.pick import PickedFace, Triple
+from tol3d.cad.step.step_shape import StepShape
 from tol3d.errors import GeometryError, SceneError
 from tol3d.files import FileContent, Files
 from tol3d.scene import Scene
-from tol3d.solids.built_shape import BuiltShape
-from tol3d.solids.kept_shape import KeptShape, run_program
-from tol3d.solids.pick import PickedFace, Triple
-from tol3d.step.step_shape import StepShape
 from tol3d.units import LARGEST
 
 FEATURES: Final = "features.json"

@@ -16,16 +16,16 @@ from tol3d.assembly.grammar.features.selector import SelectorSpec
 from tol3d.assembly.grammar.parts import SolidSpec, StepSpec
 from tol3d.assembly.picking.kept_picks import FEATURES, Kept, built_shape, file_of, kept_in, kept_solid, solid_file
 from tol3d.assembly.picking.step_picks import looked_up, place_in_file, placed, with_numbers
+from tol3d.cad.solids.built_shape import BuiltShape
+from tol3d.cad.solids.cache import picked
+from tol3d.cad.solids.kept_shape import KeptShape
+from tol3d.cad.solids.pick import Pick, PickedFace, PickError, Triple
 from tol3d.errors import GeometryError
 from tol3d.files import Files
 from tol3d.parts.details import DetailError
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.scene.references import Problem, refuse
-from tol3d.solids.built_shape import BuiltShape
-from tol3d.solids.cache import picked
-from tol3d.solids.kept_shape import KeptShape
-from tol3d.solids.pick import Pick, PickedFace, PickError, Triple
 from tol3d.units import Quantity
 
 AGREED: Final = 1e-4
@@ -110,7 +110,7 @@ def settle(scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Sc
 
 @lru_cache(maxsize=SHAPES)
 def _picked(shape: BuiltShape, picks: tuple[Pick, ...]) -> tuple[PickedFace, ...]:
-    """Faces that picks mean, as they were found before; see tol3d.solids.cache.picked."""
+    """Faces that picks mean, as they were found before; see tol3d.cad.solids.cache.picked."""
     return picked(shape, picks)
 
 

@@ -10,14 +10,14 @@ from tol3d.assembly.grammar.features.pattern import Scattered
 from tol3d.assembly.grammar.features.selector import SelectorSpec
 from tol3d.assembly.grammar.parts import StepSpec
 from tol3d.assembly.grammar.parts.solid import Placement
+from tol3d.cad.solids.pick import PickedFace, Triple
+from tol3d.cad.step.found_features import FoundFeature
+from tol3d.cad.step.reading import StepFile, read_step
+from tol3d.cad.step.refused import StepError
+from tol3d.cad.step.selectors import SelectionError, Selector, numbers, selected
 from tol3d.errors import SceneError
 from tol3d.files import FileContent
 from tol3d.scene.place import KeyPath
-from tol3d.solids.pick import PickedFace, Triple
-from tol3d.step.found import FoundFeature
-from tol3d.step.reading import StepFile, read_step
-from tol3d.step.refused import StepError
-from tol3d.step.selecting import SelectionError, Selector, numbers, selected
 
 FILES: Final = 8
 """STEP files that are kept as they were read, each some MB."""

@@ -18,7 +18,7 @@ from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.alignment import Seat
 from tol3d.assembly.placing.chords import ray, way_along
 from tol3d.assembly.placing.datum_seats import Actual, DatumSeats
-from tol3d.assembly.placing.floats import axes_of
+from tol3d.assembly.placing.float_position import axes_of
 from tol3d.assembly.placing.later_datums import LaterDatums, later_datums
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, full
 from tol3d.assembly.placing.seen_motions import SeenMotions, seen_motions

@@ -13,8 +13,8 @@ import numpy as np
 from tol3d.assembly.model import Feature, Measured
 from tol3d.assembly.placing.actual_feature import actual_size
 from tol3d.assembly.placing.gauged_frames import MET, ROUNDS
-from tol3d.assembly.placing.holding import held_by_datums
 from tol3d.assembly.placing.measuring import bonuses
+from tol3d.assembly.placing.nominal_constraints import held_by_datums
 from tol3d.assembly.placing.poses import Pose, column, dot, full, moved_about
 from tol3d.assembly.placing.seen_motions import point_row
 from tol3d.assembly.placing.world import World

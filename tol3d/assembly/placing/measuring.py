@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly, Measured
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
-from tol3d.assembly.placing.gauged_positions import on_gauges
-from tol3d.assembly.placing.gauging import GaugedPattern, position_in_room
+from tol3d.assembly.placing.gauged_positions import GaugedPattern, on_gauges, position_in_room
 from tol3d.assembly.placing.poses import (
     Codes,
     column,

@@ -1,10 +1,12 @@
-"""Gaps of a part's one-sided contacts, constraints by its relations, and their changes with its pose, in kernels."""
+"""Gaps of a part's one-sided contacts, constraints by its relations, and their changes with its pose, in kernels.
+
+Steps of poses, in kernels.
+"""
 
 from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.placing.pose_steps import stepped
 from tol3d.numerics.compiled import nested
 from tol3d.numerics.loops import copy_matrix, fill
 
@@ -134,3 +136,27 @@ def restored(pose: Any, kept: Any, i: int, reach: float, step: Any) -> None:
         undoing(pose, kept, i, step)
         if stepped(pose, step, reach) <= MET:
             break
+
+
+@nested
+def turned_by(pose: Any, a: float, b: float, c: float) -> None:
+    """Turn the rotation of a pose (3, 4) further, about (a, b, c) by 2 atan(|(a, b, c)| / 2): Cayley's formula."""
+    a, b, c = a / 2, b / 2, c / 2
+    share = 2.0 / (1.0 + a * a + b * b + c * c)
+    for k in range(3):
+        x, y, z = pose[0, k], pose[1, k], pose[2, k]
+        u, v, w = b * z - c * y, c * x - a * z, a * y - b * x
+        pose[0, k] = x + share * (u + b * w - c * v)
+        pose[1, k] = y + share * (v + c * u - a * w)
+        pose[2, k] = z + share * (w + a * v - b * u)
+
+
+@nested
+def stepped(pose: Any, step: Any, reach: float) -> Any:
+    """Move a pose by a step (6,), turn times reach and shift; returns its length, a turn [rad] or a shift per reach."""
+    turned_by(pose, step[0] / reach, step[1] / reach, step[2] / reach)
+    length = 0.0
+    for r in range(3):
+        pose[r, 3] += step[3 + r]
+        length = max(length, abs(step[r]) / reach, abs(step[3 + r]) / reach)
+    return length

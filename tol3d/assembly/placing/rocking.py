@@ -17,10 +17,10 @@ from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
 from tol3d.assembly.placing.causes import Cause
 from tol3d.assembly.placing.placer import Placer, RockingPlacer
 from tol3d.assembly.placing.poses import Codes
-from tol3d.assembly.placing.resting import generic
+from tol3d.assembly.placing.rest_move import generic
 from tol3d.assembly.placing.world import World
 from tol3d.numerics.arrays import Array
-from tol3d.system.outcome import reason_column
+from tol3d.study.system.outcome import reason_column
 
 NUDGE: Final = 1e-3
 """mm; displacement of parts for the slopes of measures."""

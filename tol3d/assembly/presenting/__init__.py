@@ -10,17 +10,17 @@ from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Draw, FurtherRow, Map, Which
-    from tol3d.runs.run import Run
-    from tol3d.study.replaying import Replay
-    from tol3d.study.simulation import Simulation
+    from tol3d.study.results.replaying import Replay
+    from tol3d.study.runs.run import Run
+    from tol3d.study.trials.simulation import Simulation
 
 
 class AssemblyPresenter:

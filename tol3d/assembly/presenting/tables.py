@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Feature
 from tol3d.assembly.model.dimension import longer
-from tol3d.assembly.placing.asked import touched
-from tol3d.assembly.placing.holding import Freedoms, HeldFreedoms, held_by, held_by_datums, in_words
-from tol3d.assembly.placing.placer import Placer, RockingPlacer
+from tol3d.assembly.placing.nominal_constraints import Freedoms, HeldFreedoms, held_by, held_by_datums, in_words
+from tol3d.assembly.placing.placer import Placer, RockingPlacer, touched
 from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.presenting.parts_tree import parts_tree
 from tol3d.assembly.system import AssemblySystem
+from tol3d.cad.solids import BuiltShape
+from tol3d.cad.solids.display_mesh import bounding_box
+from tol3d.cad.solids.kept_shape import KeptShape
+from tol3d.cad.step.step_shape import StepShape
 from tol3d.errors import InputError
 from tol3d.import_path import named as at_path
 from tol3d.report.declared import declared_table
@@ -23,12 +26,8 @@ from tol3d.report.number import NOTHING
 from tol3d.report.page import PageItem, Shown, note, titled
 from tol3d.report.presenter import Map
 from tol3d.report.system_check import MIDDLE, system_blocks
-from tol3d.runs.summary.shows import Computed, RowOf, Shows
-from tol3d.solids import BuiltShape
-from tol3d.solids.display_mesh import bounding_box
-from tol3d.solids.kept_shape import KeptShape
-from tol3d.step.step_shape import StepShape
-from tol3d.study.simulation import Simulation
+from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
+from tol3d.study.trials.simulation import Simulation
 
 SIGNS: Final = "z: a shift along z; turns z: a turn about z; each holds of what those above it leave"
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly, Measured
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.measures import reading
-from tol3d.assembly.torsors.resting import OneSided, along_nothing
+from tol3d.assembly.torsors.rest_move import OneSided, along_nothing
 from tol3d.assembly.torsors.terms import Ends, Form, Largest, Term
 from tol3d.assembly.torsors.torsor import ordered_product
 from tol3d.assembly.torsors.world import World

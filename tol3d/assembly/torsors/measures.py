@@ -9,8 +9,7 @@ import numpy as np
 from tol3d.assembly.model import Measured
 from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
 from tol3d.assembly.torsors.columns import without_rounding
-from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
-from tol3d.assembly.torsors.gauged_positions import on_gauges
+from tol3d.assembly.torsors.gauged_positions import CommonOpening, LeastInRoom, TurnedOpening, on_gauges
 from tol3d.assembly.torsors.surfaces import Surfaces
 from tol3d.assembly.torsors.terms import Clipped, Ends, Width, balances
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at

@@ -10,7 +10,7 @@ from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
 from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
 from tol3d.numerics.arrays import Array
-from tol3d.system.normals import Group
+from tol3d.study.system.normals import Group
 
 
 @dataclass(frozen=True)

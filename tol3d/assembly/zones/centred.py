@@ -3,10 +3,10 @@
 from dataclasses import dataclass, replace
 from typing import Self
 
-from tol3d.distributions import Distribution
-from tol3d.distributions.base import Place
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
+from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.base import Place
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from scipy.special import erf, ndtri
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, Density, InverseTable, integral, inverse, table
 from tol3d.assembly.zones.zone import Ratio
 from tol3d.numerics.arrays import Array
-from tol3d.system.normals import Group, scalars
+from tol3d.study.system.normals import Group, scalars
 
 SIGMAS = 3.0  # of a normal coordinate within its largest value
 

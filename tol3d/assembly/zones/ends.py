@@ -24,7 +24,7 @@ from tol3d.assembly.zones.face import left_by_a_normal
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
 from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
 from tol3d.numerics.arrays import Array
-from tol3d.system.normals import Group, scalars
+from tol3d.study.system.normals import Group, scalars
 
 ROUNDING = 1e-12
 

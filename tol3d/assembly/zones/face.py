@@ -15,7 +15,7 @@ from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS
 from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
 from tol3d.numerics.arrays import Array
-from tol3d.system.normals import Group, scalars, shifted
+from tol3d.study.system.normals import Group, scalars, shifted
 
 
 @dataclass(frozen=True)

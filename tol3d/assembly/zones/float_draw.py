@@ -10,12 +10,12 @@ from tol3d.assembly.zones.cross_section import QUARTER_TURN, uniform_lens
 from tol3d.assembly.zones.inverse import inverse
 from tol3d.assembly.zones.widened import Widened
 from tol3d.assembly.zones.zone_draw import ZoneDraw
-from tol3d.distributions import Distribution, Uniform
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.system.dependent import Dependent, Given
-from tol3d.system.normals import Group, scalars
-from tol3d.system.steepest import Values
+from tol3d.statistics.distributions import Distribution, Uniform
+from tol3d.study.system.dependent import Dependent, Given
+from tol3d.study.system.normals import Group, scalars
+from tol3d.study.system.steepest import Values
 
 Law = Literal["disc", "interval", "room"]
 

@@ -10,13 +10,13 @@ import numpy as np
 
 from tol3d.assembly.zones.widened import SIZES, SizedBy
 from tol3d.assembly.zones.zone_draw import ComponentLaw
-from tol3d.distributions import Distribution
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.system.dependent import Given
-from tol3d.system.draw import Draw
-from tol3d.system.normals import scalars
-from tol3d.system.steepest import Values
+from tol3d.statistics.distributions import Distribution
+from tol3d.study.system.dependent import Given
+from tol3d.study.system.draw import Draw
+from tol3d.study.system.normals import scalars
+from tol3d.study.system.steepest import Values
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from tol3d.assembly.zones.face import left_by_a_normal
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, integral, inverse, solved_each
 from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
 from tol3d.numerics.arrays import Array
-from tol3d.system.normals import Group, scalars, shifted
+from tol3d.study.system.normals import Group, scalars, shifted
 
 HALVINGS = 64  # of an interval, to the last digit
 TINY = np.finfo(float).tiny

@@ -10,7 +10,7 @@ from tol3d.assembly.zones.cross_section import SIGMAS
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS
 from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
 from tol3d.numerics.arrays import Array
-from tol3d.system.normals import Group, scalars
+from tol3d.study.system.normals import Group, scalars
 
 KEPT = 0.5 * SIGMAS**2  # half the square of the largest length, in sigmas
 OFF = 1e-9  # of the largest shift, over which a density is not integrated: there it has a pole of no mass

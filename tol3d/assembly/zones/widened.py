@@ -16,12 +16,12 @@ from scipy.optimize import minimize_scalar
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones.zone import Ratio, Zone
 from tol3d.assembly.zones.zone_draw import ComponentLaw, Confined, Process, ZoneDraw
-from tol3d.distributions import Distribution
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.system.dependent import Given
-from tol3d.system.draw import Draw
-from tol3d.system.normals import Group
+from tol3d.statistics.distributions import Distribution
+from tol3d.study.system.dependent import Given
+from tol3d.study.system.draw import Draw
+from tol3d.study.system.normals import Group
 
 SIZES: Final = 512  # of equal probability, over which a covariance is averaged: 1e-5 of a normal's
 KEPT: Final = 512  # covariances; a zone with a bonus takes some 50 ms

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.system.normals import Group, scalars
+from tol3d.study.system.normals import Group, scalars
 
 Ratio = float | Array
 """Width of the orientation zone over that of the zone, in (0, 1]: one number, or one per trial."""

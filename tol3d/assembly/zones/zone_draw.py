@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from tol3d.assembly.zones.balls import RingFlat
 from tol3d.assembly.zones.centred import Centred
 from tol3d.assembly.zones.zone import Ratio, UnitLaw, Zone
-from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.system.contributor import Contributor
-from tol3d.system.draw import JointDraw
-from tol3d.system.normals import Group, scalars
-from tol3d.system.steepest import Values, steepest_ends
+from tol3d.statistics.distributions import DeviationLaw, Distribution
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.draw import JointDraw
+from tol3d.study.system.normals import Group, scalars
+from tol3d.study.system.steepest import Values, steepest_ends
 
 
 @dataclass(frozen=True)

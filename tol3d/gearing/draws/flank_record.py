@@ -13,8 +13,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from tol3d.distributions.csv_table import Cell, Column, CsvTable
 from tol3d.errors import SceneError
+from tol3d.statistics.distributions.csv_table import Cell, Column, CsvTable
 from tol3d.units import FACTORS, MICRO_SIGNS
 
 NAMED: Final = re.compile(r"(?P<name>[^\[\]()]+?)\s*(?:[\[(]\s*(?P<unit>[^\])]*?)\s*[\])])?")

@@ -8,10 +8,10 @@ from itertools import accumulate
 import numpy as np
 import scipy
 
-from tol3d.distributions import standard_normal
 from tol3d.gearing.draws.pitch_draw import PitchDraw, centred
 from tol3d.numerics.arrays import Array
-from tol3d.system.steepest import Values
+from tol3d.statistics.distributions import standard_normal
+from tol3d.study.system.steepest import Values
 
 END_SIGMAS = 3.0
 """Sigmas at the ends of a normal law."""

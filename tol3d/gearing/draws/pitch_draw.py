@@ -16,12 +16,12 @@ from typing import ClassVar, Final, Self
 
 import numpy as np
 
-from tol3d.distributions import Distribution, standard_normal
-from tol3d.distributions.empirical import Piecewise
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.system.normals import Group, scalars, shifted
-from tol3d.system.steepest import Values
+from tol3d.statistics.distributions import Distribution, standard_normal
+from tol3d.statistics.distributions.empirical import Piecewise
+from tol3d.study.system.normals import Group, scalars, shifted
+from tol3d.study.system.steepest import Values
 
 NET: Final = 4096
 """Patterns over which the covariance of a law is averaged; each counts once for every tooth, as no tooth is special."""

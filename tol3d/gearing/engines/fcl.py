@@ -19,6 +19,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.cad.solids import WHOLE_FACE, FlankStrips, PulledStrip, Span
+from tol3d.cad.solids.distance import NearestPoints, Surface, mesh_surface, put
 from tol3d.gearing.builds.build import Build
 from tol3d.gearing.builds.flank_offsets import FlankPlaces, flank_slot
 from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
@@ -27,8 +29,6 @@ from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import Flank
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array
-from tol3d.solids import WHOLE_FACE, FlankStrips, PulledStrip, Span
-from tol3d.solids.distance import NearestPoints, Surface, mesh_surface, put
 
 Numbers = tuple[float, ...]
 """Coefficients of one flank [mm], SHAPES of them; empty for a flank like all others of its gear."""

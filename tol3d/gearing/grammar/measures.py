@@ -8,13 +8,11 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from tol3d.gearing.grammar.moves import GearMeshSpec, TrainSpec
 from tol3d.gearing.grammar.parts import ArmSpec, GearSpec, ShaftReference
+from tol3d.scene.bases import MOST_POSITIONS, AngleLimit, LengthLimit, MeasureSpec, MoveSpec, PartSpec, Take
 from tol3d.scene.direction import At, FixedAngle, RandomOrFixed, known_word, shape
-from tol3d.scene.measure import MOST_POSITIONS, AngleLimit, LengthLimit, MeasureSpec, Take
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.entry import Contradiction, Reference
 from tol3d.scene.name import Name
 from tol3d.scene.options import StudyOptions
-from tol3d.scene.part import PartSpec
-from tol3d.scene.reference import Contradiction, Reference
 from tol3d.strict import refused
 from tol3d.units import Dimension, Of, Quantity
 

@@ -17,9 +17,9 @@ from tol3d.gearing.grammar.parts import (
 )
 from tol3d.gearing.links import Reducer, StatedLink
 from tol3d.scene import Scene
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.bases import MoveSpec
+from tol3d.scene.entry import Reference
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Coordinate, Direction
 from tol3d.strict import refused
 from tol3d.units import Of, Positive, Quantity

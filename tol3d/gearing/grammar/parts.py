@@ -6,10 +6,9 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from tol3d.scene.entry import Entry
+from tol3d.scene.bases import GrowingSpec, Length, PartSpec
+from tol3d.scene.entry import Entry, Reference, Unusable
 from tol3d.scene.name import Name
-from tol3d.scene.part import GrowingSpec, Length, PartSpec
-from tol3d.scene.reference import Reference, Unusable
 from tol3d.scene.vector import Coordinate, Vector
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Positive, Quantity

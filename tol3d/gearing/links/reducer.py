@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from tol3d.gearing.links.stated_link import FreeTurn, LinkTrials, StatedLink
-from tol3d.system.contributor import Contributor
+from tol3d.study.system.contributor import Contributor
 from tol3d.units import angle_text
 
 

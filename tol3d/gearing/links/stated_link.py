@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import KnownRows, kept
-from tol3d.system.contributor import Contributor
-from tol3d.system.system import KeyPath
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.system import KeyPath
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,9 @@ from tol3d.gearing.play.play import Play, SeatKey, seat_key, staged_measures
 from tol3d.gearing.stack_up import analytic_backlash, analytic_transmission_error, first_order, per_normal_backlash
 from tol3d.gearing.stack_up.tooth_pairs import pieces, teeth_deviate
 from tol3d.numerics.arrays import Array
-from tol3d.system import measure as system_measure
-from tol3d.system.method import Answers
-from tol3d.system.trials import Trials
+from tol3d.study.system import measure as system_measure
+from tol3d.study.system.method import Answers
+from tol3d.study.system.trials import Trials
 
 
 @dataclass(frozen=True)

@@ -8,20 +8,19 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.cad.solids import FlankStrips
 from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engine, MeshReading, ReadingEngine
-from tol3d.gearing.meshing.backlash import measure_backlash, moved, read_backlash, turning_gear
-from tol3d.gearing.meshing.seats import driver_angles, seated
+from tol3d.gearing.meshing.seats import driver_angles, measure_backlash, moved, read_backlash, seated, turning_gear
 from tol3d.gearing.model import Backlash, Measure, Mesh, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measure, gear_measures
 from tol3d.gearing.play.linked import Remembered, as_built
 from tol3d.gearing.play.play import Play, Read, SeatKey, seat_key, seat_keys, staged_measures
 from tol3d.gearing.stack_up import first_order, per_normal_backlash
 from tol3d.numerics.arrays import Array
-from tol3d.solids import FlankStrips
-from tol3d.system import measure as system_measure
-from tol3d.system.method import Answers, Codes, joined_answers
-from tol3d.system.trials import Trials
+from tol3d.study.system import measure as system_measure
+from tol3d.study.system.method import Answers, Codes, joined_answers
+from tol3d.study.system.trials import Trials
 
 Details = dict[str, NDArray[np.generic]]
 

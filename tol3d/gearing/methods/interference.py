@@ -7,9 +7,8 @@ from tol3d.gearing.methods.analytic import analytic_backlashes, analytic_play
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model
 from tol3d.gearing.model.measure import ParallelStage
 from tol3d.gearing.play.linked import link_trials
-from tol3d.system.stated import mean_build, nominal_build
-from tol3d.system.system import KeyPath
-from tol3d.system.trials import Trials
+from tol3d.study.system.system import KeyPath
+from tol3d.study.system.trials import Trials, mean_build, nominal_build
 
 Problem = tuple[KeyPath, str]
 

@@ -13,7 +13,7 @@ from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Neglect
 from tol3d.gears import GearPair
 from tol3d.numerics.arrays import Array
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials
 
 
 def neglected(model: Model, measure: Measure, trials: Trials) -> Mapping[str, Array]:

@@ -17,10 +17,9 @@ from tol3d.gearing.model import Contributor, Effect, LinkDeviation, LostMotion, 
 from tol3d.gearing.play.linked import link_contributors
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import row_keys
-from tol3d.system.regressors import is_group, regress_plainly, regress_term
-from tol3d.system.stated import mean_deviations, stated
-from tol3d.system.taken import ROWS_AT_ONCE, taken
-from tol3d.system.trials import Trials
+from tol3d.study.system.regressors import is_group, regress_plainly, regress_term
+from tol3d.study.system.taken import ROWS_AT_ONCE, taken
+from tol3d.study.system.trials import Trials, mean_deviations, stated
 
 Columns = Mapping[str, NDArray[Any]]
 

@@ -13,13 +13,12 @@ from tol3d.gearing.effects import (
     TurningOffset,
 )
 from tol3d.gearing.links import Reducer, StatedLink
-from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.measure import Backlash, Kind, LostMotion, Measure, Reading, TransmissionError
-from tol3d.gearing.model.model import GearPart, Model
+from tol3d.gearing.model.model import Contributor, GearPart, Model
 from tol3d.gearing.shafts import Arm, Mesh, Seat, Shaft, Train
-from tol3d.system.draw import Planar, Scalar
-from tol3d.system.positions import Positions
+from tol3d.study.system.draw import Planar, Scalar
+from tol3d.study.system.positions import Positions
 
 from tol3d.gearing.model.from_scene import model_from_scene  # isort: skip  (needs the names above)
 

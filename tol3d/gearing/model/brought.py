@@ -9,11 +9,11 @@ from tol3d.gearing.grammar.moves import LinkSpec, meshes_of
 from tol3d.gearing.grammar.parts import ShaftSpec, carried
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
 from tol3d.gearing.links import StatedLink
-from tol3d.gearing.model.contributor import Contributor
+from tol3d.gearing.model.model import Contributor
 from tol3d.scene import Scene
-from tol3d.system.draw import Draw
-from tol3d.system.mechanism import brought
-from tol3d.system.plain import UNITS
+from tol3d.study.system.draw import Draw
+from tol3d.study.system.mechanism import brought
+from tol3d.study.system.plain import UNITS
 
 Owner = TypeVar("Owner")
 

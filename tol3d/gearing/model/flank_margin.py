@@ -8,7 +8,7 @@ import numpy as np
 from tol3d.gearing.effects import SHAPES, FlankDeviation
 from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import GearPair, SpurGear
-from tol3d.gears.flank import RIGHT
+from tol3d.gears.toothed_gear import RIGHT
 
 MARGINS: Final = (0.35, 0.6, 0.85)
 """Pitches beyond CONTACT_MARGIN to try: the first sufficient one is taken."""

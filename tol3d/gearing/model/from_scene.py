@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Final
 
 import tol3d.gearing.model.train_measures  # noqa: F401  (registers its kinds)
-from tol3d.distributions.drawn import nominal_size
 from tol3d.errors import GeometryError, SceneError
 from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
@@ -38,6 +37,7 @@ from tol3d.gears import LEFT, RIGHT, Gear, InternalGear, SpurGear
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, larger_end, warned
 from tol3d.scene.place import KeyPath
+from tol3d.statistics.distributions.drawn import nominal_size
 
 THICKNESS: Final = Implausible(0.1, "state the deviation of the thickness from nominal, and check the unit")
 

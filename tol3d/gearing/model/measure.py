@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
-from tol3d.system import measure as system_measure
-from tol3d.system.measure import Worse
-from tol3d.system.pooled_statistic import PooledStatistic
-from tol3d.system.positions import Positions, Take
-from tol3d.system.spectrum import Spectrum
+from tol3d.study.system import measure as system_measure
+from tol3d.study.system.measure import Worse
+from tol3d.study.system.pooled import PooledStatistic, Spectrum
+from tol3d.study.system.positions import Positions, Take
 from tol3d.units import ARCMIN
 
 BacklashQuantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash", "rest_angle"]

@@ -20,9 +20,9 @@ from tol3d.gearing.model.model import Model
 from tol3d.gearing.shafts import Mesh, Train
 from tol3d.gears import one_tooth_acts, one_tooth_share
 from tol3d.scene import Scene
+from tol3d.scene.bases import MeasureEntry
 from tol3d.scene.direction import At
-from tol3d.scene.measure import MeasureEntry
-from tol3d.system.positions import Positions
+from tol3d.study.system.positions import Positions
 
 Reader = Callable[[Mesh], Reading]
 """Reading of each mesh on a path."""

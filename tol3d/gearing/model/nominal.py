@@ -8,14 +8,14 @@ from tol3d.gearing.effects import NOTHING, Temperature
 from tol3d.gearing.grammar.moves import meshes_of
 from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec, by_scale
-from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
+from tol3d.gearing.model.model import Contributor
 from tol3d.gearing.shafts import Carried, Mesh
 from tol3d.gears import BevelPair, SpurGear, SpurPair
 from tol3d.scene import Scene
+from tol3d.scene.bases import ToleranceEntry
 from tol3d.scene.temperature import TemperatureSpec
-from tol3d.scene.tolerance import ToleranceEntry
-from tol3d.system.draw import Planar, Scalar
+from tol3d.study.system.draw import Planar, Scalar
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from tol3d.gearing.model.trains import gravity_torque, refuse_incomparable
 from tol3d.gearing.shafts import Arm, Train
 from tol3d.scene import Scene
 from tol3d.scene.direction import At, RandomOrFixed
-from tol3d.system.positions import Positions
+from tol3d.study.system.positions import Positions
 
 
 @measured.register

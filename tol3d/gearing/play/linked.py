@@ -8,9 +8,9 @@ import numpy as np
 
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
 from tol3d.gearing.model import Measure, Model
-from tol3d.gearing.model.contributor import Contributor
+from tol3d.gearing.model.model import Contributor
 from tol3d.numerics.arrays import Array
-from tol3d.system.trials import Trials
+from tol3d.study.system.trials import Trials
 
 DEAR: Final = 4
 """Contacts of a link from which it pays to look for trials that are alike for it."""

@@ -36,12 +36,11 @@ from tol3d.gearing.presenting.chain_grid import (
 from tol3d.gearing.presenting.link_symbol import draw_link, draw_text
 from tol3d.gearing.presenting.shown_stage import ShownStage, stages_of, trains_of, whole_ratio_text
 from tol3d.gearing.summary.types import TrainSummary
-from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
+from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead, wrapped
 from tol3d.report.column import seated_text
 from tol3d.report.heading import legible
-from tol3d.report.label import wrapped
 from tol3d.report.number import NOTHING, given_text, value_text
-from tol3d.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.run import RunSummary
 
 SHAFT_HEIGHT: Final = 0.68  # inch
 SENSE_HEIGHT: Final = SHAFT_HEIGHT / 2 + 0.14  # inch, from the middle of the shafts

@@ -25,11 +25,10 @@ from tol3d.gearing.presenting.link_symbol import link_colour
 from tol3d.gearing.presenting.shown_stage import Range, ShownStage, distributions_of, leading_sums, share_text
 from tol3d.gearing.summary.types import TrainSummary
 from tol3d.numerics.arrays import Array
-from tol3d.report.canvas import BLACK, METHOD_COLOURS, OUTSIDE, label_angles, plain_axes
+from tol3d.report.canvas import BLACK, METHOD_COLOURS, OUTSIDE, label_angles, plain_axes, wrapped
 from tol3d.report.heading import legible
-from tol3d.report.label import wrapped
 from tol3d.report.number import NOTHING, short_text, tip_mm, value_text
-from tol3d.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.run import RunSummary
 
 BAR_LABEL: Final = 0.46  # inch, of two lines of text
 LEAST_HEIGHT: Final = 1e-9  # arcmin; of a bar that has a label above it

@@ -15,7 +15,7 @@ from tol3d.gearing.slopes.coefficients import (
 from tol3d.report.declared import declared_table
 from tol3d.report.number import degrees_text
 from tol3d.report.page import PageItem, Shown, line, titled
-from tol3d.runs.summary.shows import Computed, RowOf, Shows
+from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
 
 OTHER = "≠"
 AT_ONE_POSITION = "of the value at a random position; run gives those of what is taken of all positions"

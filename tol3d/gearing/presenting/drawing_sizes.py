@@ -5,7 +5,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
-from tol3d.distributions import DeviationLaw
 from tol3d.errors import GeometryError
 from tol3d.gearing.effects import ToothThickness
 from tol3d.gearing.model import Model
@@ -13,7 +12,8 @@ from tol3d.gears import Gear, InternalGear, SpurGear
 from tol3d.gears.tooth_measures import Span, ToothMeasure, pins_of, span_of
 from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, Row, note, titled
-from tol3d.runs.summary.shows import Shows
+from tol3d.statistics.distributions import DeviationLaw
+from tol3d.study.runs.summary.shows import Shows
 
 MEANING = (
     "span and pins are those of the scene, or chosen to touch near the reference circle shifted by x m; their limits "

@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 
 from tol3d.gearing.presenting.shown_stage import ShownStage
-from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY
-from tol3d.report.label import wrapped
+from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, wrapped
 
 OTHER_COLOUR: Final = SKY
 LINK_COLOURS: Final[Mapping[str, str]] = {

@@ -28,9 +28,9 @@ from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, limits_text
 from tol3d.report.page import Line, PageItem, line, title, titled
 from tol3d.report.system_check import law_name, sample_notes, system_blocks
 from tol3d.report.worst_found import worst_blocks
-from tol3d.runs.summary.shows import Computed, RowOf, Shows
-from tol3d.study.simulation import Simulation
-from tol3d.system.draw import JointDraw
+from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
+from tol3d.study.system.draw import JointDraw
+from tol3d.study.trials.simulation import Simulation
 from tol3d.units import angle_text
 
 

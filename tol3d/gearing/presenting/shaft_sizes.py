@@ -9,8 +9,8 @@ from dataclasses import replace
 from functools import cache
 from typing import Final
 
+from tol3d.cad.solids import ArmBody, Collar, ShaftBody
 from tol3d.gearing.model import Arm, Model, Shaft, StatedLink
-from tol3d.solids import ArmBody, Collar, ShaftBody
 
 PITCH_SHARE: Final = 0.3  # of the smallest pitch diameter on a shaft, where none of its gears has a bore
 ARM_DIAMETER: Final = 40.0  # mm, at most

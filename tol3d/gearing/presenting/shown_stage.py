@@ -7,9 +7,9 @@ from typing import Self
 from tol3d.gearing.summary.types import Ends, StageSummary, TrainMeasureSummary, TrainsOfRun, TrainSummary
 from tol3d.report.column import columns_of
 from tol3d.report.number import NOTHING, tip_arcmin, tip_mm
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.values import Method, Section
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.values import Method, Section
 
 MANY_TURNS = 1e6  # no decimals from there on
 ROUNDING = 1e-6  # sigma

@@ -21,9 +21,9 @@ from tol3d.report.body import Body, World
 from tol3d.report.motion import Motion
 from tol3d.report.page import PageItem
 from tol3d.report.presenter import View, presenter_at
-from tol3d.runs.summary.run import RunSummary
-from tol3d.system.contributor import Contributor
-from tol3d.system.trials import Trials
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.trials import Trials
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,9 +22,9 @@ from tol3d.report.declared import declared_table
 from tol3d.report.number import tip_mm, value_cell
 from tol3d.report.page import BLANK, PageItem, Row, Shown, Table, line, note, title
 from tol3d.report.presenter import FurtherRow
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.shows import Computed, Shows
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.shows import Computed, Shows
 
 METHOD_WORDS = {"analytic": "analytic (same trials)", "geometric": "3D simulation"}
 SUMS_MEAN = (

@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.cad.solids import PosedBody, PosedGear, display_mesh
 from tol3d.gearing.model import Arm, LostMotion, Model
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.presenting.shaft_sizes import ShaftSizes, Span, arm_body
@@ -19,7 +20,6 @@ from tol3d.gearing.shown.placed import PlacedGear, SeatedMesh
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Arrow, Body, Surface, World
-from tol3d.solids import PosedBody, PosedGear, display_mesh
 
 BODY_DEFLECTION: Final = 1 / 500  # of the diameter; forty facets round, their edges too blunt to be drawn
 

@@ -8,13 +8,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.cad.solids import DisplayMesh, display_mesh
 from tol3d.gearing.engines import OK
 from tol3d.gearing.meshing.mesh import ROOT_FINDING_NOISE
 from tol3d.gearing.model import Mesh
 from tol3d.gears import Gear
 from tol3d.numerics.arrays import Array
 from tol3d.report.number import measured_text
-from tol3d.solids import DisplayMesh, display_mesh
 
 DISPLAY_DEFLECTION: Final = 0.5e-3  # mm; a hundredth of a common backlash, and 40 000 triangles a gear at most
 CONE_DEFLECTION: Final = 5e-3  # mm; of a bevel gear, whose faces OCC meshes one by one and much finer than asked

@@ -17,19 +17,17 @@ from numpy.typing import NDArray
 from tol3d.gearing.builds.flank_offsets import FlankPlaces
 from tol3d.gearing.builds.rates import BuildRates, build_rates
 from tol3d.gearing.engines import OK, Engine, Gaps
-from tol3d.gearing.meshing.backlash import moved_rates
 from tol3d.gearing.meshing.mesh import Meshing, MeshSeat
-from tol3d.gearing.meshing.seats import Seats, geometric_values, play_of, seated
+from tol3d.gearing.meshing.seats import Seats, geometric_values, moved_rates, play_of, seated
 from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.play.linked import link_trials
-from tol3d.gearing.play.load_paths import Variable
-from tol3d.gearing.play.play import seat_key
+from tol3d.gearing.play.play import Variable, seat_key
 from tol3d.gears import Flank
-from tol3d.gears.flank import opposite
+from tol3d.gears.toothed_gear import opposite
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array
-from tol3d.system.taken import ROWS_AT_ONCE
-from tol3d.system.trials import Trials
+from tol3d.study.system.taken import ROWS_AT_ONCE
+from tol3d.study.system.trials import Trials
 
 
 def sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measure) -> Array:

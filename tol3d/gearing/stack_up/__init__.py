@@ -1,10 +1,15 @@
 """The reference method: nominal values and stack-ups with their sources. It never sees a mesh, a pose or an engine."""
 
-from tol3d.gearing.stack_up.backlash import analytic_backlash, first_order, per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.closed_form import closed_form, reference_form
+from tol3d.gearing.stack_up.measures import (
+    analytic_backlash,
+    analytic_transmission_error,
+    first_order,
+    per_normal_backlash,
+    stack_of,
+)
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
-from tol3d.gearing.stack_up.transmission_error import analytic_transmission_error
 
 __all__ = [
     "Stack",

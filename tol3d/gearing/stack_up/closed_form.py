@@ -14,16 +14,16 @@ from fractions import Fraction
 
 import numpy as np
 
-from tol3d.distributions import Distribution
 from tol3d.gearing.links import LinkSum
 from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar, Positions, TransmissionError
 from tol3d.gearing.model.measure import at_one_position
-from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_groups, leaning_shares
+from tol3d.gearing.stack_up.measures import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
 from tol3d.gears import GearPair
-from tol3d.system.closed_form import ClosedForm, Share
+from tol3d.statistics.distributions import Distribution
+from tol3d.study.system.closed_form import ClosedForm, Share
 
 TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal is under 1e-6 of sigma
 

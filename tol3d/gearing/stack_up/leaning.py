@@ -17,10 +17,10 @@ from tol3d.gearing.model import Contributor
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gears import GearPair
 from tol3d.numerics.arrays import Array
-from tol3d.samplers.sobol import Sobol
-from tol3d.samplers.stream import Stream
-from tol3d.system.closed_form import Share
-from tol3d.system.contributor import Contributor as AnyContributor
+from tol3d.statistics.samplers.sobol import Sobol
+from tol3d.statistics.samplers.stream import Stream
+from tol3d.study.system.closed_form import Share
+from tol3d.study.system.contributor import Contributor as AnyContributor
 
 Change = Callable[[Mapping[str, Array]], Array]
 

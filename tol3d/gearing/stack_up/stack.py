@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model import Mesh, Model, Reading
-from tol3d.gearing.stack_up.nominal_mesh import NominalMesh, Pair
-from tol3d.gearing.stack_up.term import Neglect, Role
+from tol3d.gearing.stack_up.term import Neglect, NominalMesh, Pair, Role
 from tol3d.gearing.stack_up.terms import contribution
 from tol3d.gearing.stack_up.tooth_pairs import ToothPairs, distinct, tooth_pairs
 from tol3d.numerics.arrays import Array

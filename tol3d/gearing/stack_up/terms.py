@@ -22,8 +22,7 @@ from tol3d.gearing.effects import (
     TurningOffset,
 )
 from tol3d.gearing.model import Contributor, Effect
-from tol3d.gearing.stack_up.nominal_mesh import NominalMesh, as_counted
-from tol3d.gearing.stack_up.term import Role, Term
+from tol3d.gearing.stack_up.term import NominalMesh, Role, Term, as_counted
 from tol3d.gears import BevelPair, GearPair, InternalPair, SpurPair
 from tol3d.numerics.arrays import Array
 

@@ -24,8 +24,8 @@ from tol3d.gearing.model import Contributor, Mesh, Model, Reading
 from tol3d.gearing.model.flank_margin import margin_of
 from tol3d.gearing.stack_up.term import Role
 from tol3d.gears import SpurGear, SpurPair
-from tol3d.gears.flank import RIGHT
 from tol3d.gears.pair import CONTACT_MARGIN
+from tol3d.gears.toothed_gear import RIGHT
 from tol3d.numerics.arrays import Array
 
 Integers = NDArray[np.int64]

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final, Literal
 
-from tol3d.runs.summary.values import Section
+from tol3d.study.runs.summary.values import Section
 
 QUANTITY_WORDS: Final[Mapping[str, str]] = {
     "normal_backlash": "normal backlash",

@@ -27,11 +27,11 @@ from tol3d.gearing.summary.types import (
     TransmissionErrorWords,
 )
 from tol3d.gears import LEFT
-from tol3d.runs.summary.values import made
 from tol3d.scene.published import PublishedColumn
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC
-from tol3d.system.pooled import PooledTerms
-from tol3d.system.system import Published
+from tol3d.study.runs.summary.values import made
+from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC
+from tol3d.study.system.pooled import PooledTerms
+from tol3d.study.system.system import Published
 from tol3d.units import ARCMIN, Quantity
 
 

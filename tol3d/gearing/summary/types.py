@@ -14,11 +14,11 @@ from tol3d.gearing.summary.measure_words import (
     Reading,
     readings_words,
 )
-from tol3d.runs.summary.kinds import SummaryKinds
-from tol3d.runs.summary.measure import Conversion, MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Known, Label, Maybe, Number, Numbers, Section, Unit
 from tol3d.strict import refused
+from tol3d.study.runs.summary.kinds import SummaryKinds
+from tol3d.study.runs.summary.measure import Conversion, MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Known, Label, Maybe, Number, Numbers, Section, Unit
 from tol3d.units import shown
 
 Over = Literal["random", "at", "turn", "long_period", "swing"]

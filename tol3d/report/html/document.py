@@ -17,11 +17,9 @@ from tol3d.report.bars import Bars, bars_of
 from tol3d.report.chart import Charts
 from tol3d.report.column import shares_of, unexplained_words
 from tol3d.report.compare import difference_of, measures_of
-from tol3d.report.convergence import convergence_of
 from tol3d.report.heading import WORST_FIRST, shown_measures
-from tol3d.report.html.blocks import CARDS, page_blocks
+from tol3d.report.html.blocks import CARDS, Inside, Markup, page_blocks, tag, together
 from tol3d.report.html.svg import figure
-from tol3d.report.html.tags import Inside, Markup, tag, together
 from tol3d.report.joint import correlation_blocks
 from tol3d.report.measure_charts import chart_of
 from tol3d.report.page import Page, Table, note, warning
@@ -43,15 +41,15 @@ from tol3d.report.report_sections import (
 from tol3d.report.share_charts import FEWEST, Shares, matrix, pareto, shares_in
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.table import meanings, measure_blocks
-from tol3d.report.trial_charts import convergence, differences, shown_runs
+from tol3d.report.trial_charts import convergence, convergence_of, differences, shown_runs
 from tol3d.report.verdict import accepted_text, verdict_report
-from tol3d.runs.run import Run
-from tol3d.runs.summary.judged import Accepted, JudgedMeasure, demand_of
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.run import RunSummary
-from tol3d.scene.node import plain
+from tol3d.scene.place import plain
 from tol3d.scene.text import scene_text
-from tol3d.system.outcome import value_column
+from tol3d.study.runs.run import Run
+from tol3d.study.runs.summary.judged import Accepted, JudgedMeasure, demand_of
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.system.outcome import value_column
 
 VIEW_3D: Final = "tol3d.report.html.view_3d"  # loads VTK, a hundred megabytes
 TRIALS_A_BAR: Final = 5

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.report.chart import Axis
-from tol3d.report.html.tags import Markup, tag
+from tol3d.report.html.blocks import Markup, tag
 from tol3d.report.ticks import Ticks, decades, ticks_of
 
 

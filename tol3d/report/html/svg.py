@@ -24,8 +24,8 @@ from tol3d.report.chart import (
     Series,
 )
 from tol3d.report.heading import cut
+from tol3d.report.html.blocks import Markup, tag
 from tol3d.report.html.frame import LETTER, NARROW, WIDE, Frame, Scale
-from tol3d.report.html.tags import Markup, tag
 
 HIGH: Final = 246.0
 """Height of a panel of numbers."""

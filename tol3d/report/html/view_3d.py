@@ -21,13 +21,13 @@ from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, Surface, World
 from tol3d.report.drawn_solids import poly_data
 from tol3d.report.heading import shown_measures
-from tol3d.report.html.tags import Markup, tag
+from tol3d.report.html.blocks import Markup, tag
 from tol3d.report.number import measured_text
 from tol3d.report.presenter import Display, Presenter, Which
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.view import view_run
-from tol3d.runs.run import Run
-from tol3d.system.outcome import value_column
+from tol3d.study.runs.run import Run
+from tol3d.study.system.outcome import value_column
 
 FACTORS: Final = (1.0, 10.0, 100.0)
 """Magnifications of a trial's deviations; a build that does not allow one says so."""

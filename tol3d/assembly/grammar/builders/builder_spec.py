@@ -6,12 +6,12 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import AfterValidator, Field
 
+from tol3d.cad.solids import BuiltShape
 from tol3d.parts.details import Hole, Pin, Slot
+from tol3d.scene.bases import Length
 from tol3d.scene.listed import listed
-from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Coordinate
-from tol3d.solids import BuiltShape
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Quantity, shown
 

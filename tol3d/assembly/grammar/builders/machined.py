@@ -7,10 +7,10 @@ from pydantic import Field
 
 from tol3d.assembly.grammar.builders.builder_spec import BuilderSpec, HoleSpec, PinSpec, Place, SlotSpec, place
 from tol3d.assembly.grammar.feature_name import OwnName
+from tol3d.cad.solids.numbered_parts import Block, Bracket, Cover, Housing, Plate
 from tol3d.parts.details import Bore, Boss, Spigot
-from tol3d.scene.part import Length
+from tol3d.scene.bases import Length
 from tol3d.scene.vector import Vector, three
-from tol3d.solids.machined import Block, Bracket, Cover, Housing, Plate
 from tol3d.strict import Strict
 
 Face = Literal["top", "bottom", "left", "right", "front", "back"]

@@ -11,14 +11,14 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.features.feature_spec import FaceKind, Found, OneFaceSpec, known, lengths
 from tol3d.assembly.grammar.features.nominal_frame import frame
 from tol3d.assembly.model import Axis, Cone
+from tol3d.scene.bases import Length
 from tol3d.scene.listed import listed
-from tol3d.scene.part import Length
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 from tol3d.units import Of, Quantity
 
 if TYPE_CHECKING:
-    from tol3d.solids.pick import PickedFace
+    from tol3d.cad.solids.pick import PickedFace
 
 
 class AxisSpec(OneFaceSpec):

@@ -17,7 +17,7 @@ from tol3d.strict import Strict, refused
 from tol3d.units import Quantity
 
 if TYPE_CHECKING:
-    from tol3d.solids.pick import PickedFace
+    from tol3d.cad.solids.pick import PickedFace
 
 
 FaceKind = Literal["plane", "cylinder", "cone", "sphere"]

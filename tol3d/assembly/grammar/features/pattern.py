@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.features.nominal_frame import ALONG, unit
 from tol3d.numerics.arrays import Array
-from tol3d.scene.part import Length
+from tol3d.scene.bases import Length
 from tol3d.scene.vector import Direction
 from tol3d.strict import Strict, refused
 from tol3d.units import Quantity, summed

@@ -19,13 +19,13 @@ from tol3d.assembly.grammar.features.feature_spec import (
 from tol3d.assembly.grammar.features.nominal_frame import frame, is_across
 from tol3d.assembly.model import Plane, RoundPlane, Slot
 from tol3d.errors import GeometryError
+from tol3d.scene.bases import Length
 from tol3d.scene.listed import listed
-from tol3d.scene.part import Length
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 
 if TYPE_CHECKING:
-    from tol3d.solids.pick import PickedFace
+    from tol3d.cad.solids.pick import PickedFace
 
 
 class PlaneSpec(OneFaceSpec):

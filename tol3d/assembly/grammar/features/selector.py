@@ -8,9 +8,9 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.feature_spec import FaceSpec
+from tol3d.scene.bases import Length
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
-from tol3d.scene.part import Length
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
 

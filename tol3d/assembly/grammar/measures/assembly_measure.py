@@ -10,14 +10,13 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.moves.assembly_move import AssemblyMoveSpec
-from tol3d.assembly.grammar.moves.forgotten import MoveReference
+from tol3d.assembly.grammar.moves.assembly_move import AssemblyMoveSpec, MoveReference
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.measures import Measured, OverPlay, Reading, Rocking
-from tol3d.scene.measure import AngleLimit, LengthLimit, MeasureEntry, Take
+from tol3d.scene.bases import AngleLimit, LengthLimit, MeasureEntry, Take
+from tol3d.scene.entry import Reference
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 from tol3d.units import Dimension

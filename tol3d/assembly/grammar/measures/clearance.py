@@ -8,15 +8,15 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec, TimedSpec
-from tol3d.assembly.grammar.moves.forgotten import MoveReference
+from tol3d.assembly.grammar.moves.assembly_move import MoveReference
 from tol3d.assembly.grammar.moves.play import PlaySpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.measures import PLACING, TORSORS, Measured, Reading
+from tol3d.scene.bases import Length
+from tol3d.scene.entry import Reference
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
-from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Reference
 from tol3d.strict import refused
 
 CHORD_ERROR: Final = 2e-3

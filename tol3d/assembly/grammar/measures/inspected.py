@@ -13,8 +13,8 @@ from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.clearance import MOST_HOLES
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.model.measures import PLACING, TORSORS, Gauge, Measured, Reading, SetGauge
+from tol3d.scene.bases import Length
 from tol3d.scene.listed import listed
-from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused

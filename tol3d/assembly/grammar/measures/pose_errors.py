@@ -11,8 +11,8 @@ from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec
 from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.measures import PLACING, TORSORS, Measured, Reading
+from tol3d.scene.entry import Reference
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Reference
 from tol3d.strict import refused
 from tol3d.units import Dimension
 

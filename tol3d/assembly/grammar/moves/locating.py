@@ -1,7 +1,10 @@
-"""Six contacts of points on planes: 3-2-1, and six planes at once."""
+"""Six contacts of points on planes: 3-2-1, and six planes at once.
+
+Parts that stay where they are nominally, and placed parts that become one body.
+"""
 
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, islice
 from typing import Annotated, ClassVar, Literal
 
@@ -9,11 +12,18 @@ from pydantic import Field
 
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.feature_spec import ROUND
-from tol3d.assembly.grammar.moves.assembly_move import DrawnFeatures, PairSpec, PlacingSpec, PointTouch
+from tol3d.assembly.grammar.moves.assembly_move import (
+    AssemblyMoveSpec,
+    DrawnFeatures,
+    PairSpec,
+    PlacingSpec,
+    PointTouch,
+)
 from tol3d.assembly.grammar.moves.mate import RelationSpec
 from tol3d.assembly.model.move import Acts
-from tol3d.assembly.model.moves import STATED_BY, Locate, PointsOn, Rest
+from tol3d.assembly.model.moves import STATED_BY, Fix, Locate, PointsOn, Rest, Weld
 from tol3d.scene.listed import listed
+from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict
@@ -138,3 +148,33 @@ class RestSpec(LocatingSpec):
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
         """Contacts, then relations."""
         return chain(super().paired(), ((("relations", k), pair) for k, pair in enumerate(self.relations)))
+
+
+class FixSpec(PlacingSpec):
+    """A part stays where it is nominally: the first of an assembly, or a fixture."""
+
+    words: ClassVar[str] = "a fixed part"
+    acts: ClassVar[Acts] = Fix.acts
+    stated_by: ClassVar[str] = f"{STATED_BY}.moves:fixed"
+
+    kind: Literal["fix"]
+
+    @property
+    def fixed(self) -> Sequence[str]:
+        return (self.part,)
+
+
+class WeldSpec(AssemblyMoveSpec):
+    """Placed parts become one body, which may be moved again by the name of its first part."""
+
+    words: ClassVar[str] = "a weld"
+    acts: ClassVar[Acts] = Weld.acts
+    stated_by: ClassVar[str] = f"{STATED_BY}.moves:welded"
+
+    kind: Literal["weld"]
+    part: Name = Field(description="by whose name the body is moved again")
+    to: Annotated[tuple[Name, ...], listed("parts")] = Field(description="what it is welded to")
+
+    @property
+    def joined(self) -> Sequence[tuple[KeyPath, str]]:
+        return [(("part",), self.part), *((("to", k), name) for k, name in enumerate(self.to))]

@@ -14,11 +14,11 @@ from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.move import Acts
 from tol3d.assembly.model.moves import STATED_BY
 from tol3d.assembly.model.play import Engage
-from tol3d.distributions import StatedDistribution
+from tol3d.scene.entry import Reference
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Direction
+from tol3d.statistics.distributions import StatedDistribution
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Quantity, refuse_dimension, shown
 

@@ -1,6 +1,5 @@
 """Kinds of part, one file each."""
 
-from tol3d.assembly.grammar.parts.solid import SolidSpec, likes
-from tol3d.assembly.grammar.parts.step import StepSpec
+from tol3d.assembly.grammar.parts.solid import SolidSpec, StepSpec, likes
 
 __all__ = ["SolidSpec", "StepSpec", "likes"]

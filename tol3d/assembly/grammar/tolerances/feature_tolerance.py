@@ -11,9 +11,9 @@ from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.zone import laws_lacking
 from tol3d.assembly.model.datum_frame import Modifier
+from tol3d.scene.bases import ToleranceEntry
+from tol3d.scene.entry import Reference
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Reference
-from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.strict import Strict
 
 

@@ -10,11 +10,11 @@ from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.features.feature_spec import AXES, ROUND
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
 from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, RingLawSpec, ZoneSpec, scaled_in_zone
-from tol3d.distributions.base import Stays
 from tol3d.files import Files
+from tol3d.scene.bases import Length
 from tol3d.scene.listed import listed
-from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
+from tol3d.statistics.distributions.base import Stays
 from tol3d.strict import Strict, refused
 
 

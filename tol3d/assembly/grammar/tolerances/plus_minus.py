@@ -8,11 +8,10 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
-from tol3d.scene.entry import AboutOne
+from tol3d.scene.bases import ToleranceSpec
+from tol3d.scene.entry import AboutOne, Contradiction
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
-from tol3d.scene.reference import Contradiction
-from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 from tol3d.units import Of, Quantity

@@ -6,11 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth, FlankOffsets
-from tol3d.gearing.engines.exact.foot import flank_of, section
-from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose, turned
-from tol3d.gearing.engines.exact.reach import within_reach
-from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, gap_row, looks_of, read_row, write_contact
-from tol3d.gearing.engines.exact.seating import (
+from tol3d.gearing.engines.exact.flank_contact import (
     ALL_TEETH,
     Look,
     MeshBuild,
@@ -23,8 +19,12 @@ from tol3d.gearing.engines.exact.seating import (
     seen,
     standing,
 )
+from tol3d.gearing.engines.exact.foot import flank_of, section
+from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose, turned
+from tol3d.gearing.engines.exact.reach import within_reach
+from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, gap_row, looks_of, read_row, write_contact
 from tol3d.gearing.engines.exact.tooth_contact import Sight, Touch, edge_gap, height, most_out, sight, touch, wrapped
-from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
+from tol3d.gearing.engines.gaps import INTERFERES, OK, OUT_OF_RANGE
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 

@@ -2,8 +2,8 @@
 
 import math
 
+from tol3d.gearing.engines.exact.flank_contact import MeshBuild
 from tol3d.gearing.engines.exact.foot import opening, widest
-from tol3d.gearing.engines.exact.seating import MeshBuild
 from tol3d.numerics.compiled import part
 
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.engines.exact.flank_contact import Look, MeshBuild, closed, seen, standing
 from tol3d.gearing.engines.exact.foot import opening
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.reach import within_reach
 from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, write_contact
-from tol3d.gearing.engines.exact.seating import Look, MeshBuild, closed, seen, standing
-from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
+from tol3d.gearing.engines.gaps import INTERFERES, OK, OUT_OF_RANGE
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 

@@ -18,12 +18,10 @@ from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
     together,
 )
 from tol3d.gearing.shafts import Carried, Mesh
+from tol3d.scene.bases import MoveSpec, PartSpec
 from tol3d.scene.direction import At, FixedAngle, known_word, shape
-from tol3d.scene.entry import Entry
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.entry import Contradiction, Entry, Reference
 from tol3d.scene.name import Name
-from tol3d.scene.part import PartSpec
-from tol3d.scene.reference import Contradiction, Reference
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,6 @@ from typing import Annotated, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.distributions import Distribution, Normal, Uniform
-from tol3d.distributions.base import Stays
-from tol3d.distributions.derived import Proportion, Scale
 from tol3d.errors import GeometryError, InputError
 from tol3d.files import Files
 from tol3d.gearing.draws.pitch_draw import tooth_names
@@ -20,13 +17,15 @@ from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, Nominal
 from tol3d.gearing.grammar.tolerances.gears import TeethOffAxisSpec
 from tol3d.gears import LEFT, RIGHT, Gear, SpurGear
 from tol3d.gears.pair import SAME_LENGTH
-from tol3d.scene.move import MoveSpec
-from tol3d.scene.part import Length, PartSpec
+from tol3d.scene.bases import Length, MoveSpec, PartSpec
+from tol3d.scene.entry import Contradiction
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Contradiction
-from tol3d.standards import iso_1328_2
+from tol3d.statistics.distributions import Distribution, Normal, Uniform
+from tol3d.statistics.distributions.base import Stays
+from tol3d.statistics.distributions.derived import Proportion, Scale
+from tol3d.statistics.standards import iso_1328_2
 from tol3d.strict import Strict, refused
-from tol3d.system.draw import Draw, Each
+from tol3d.study.system.draw import Draw, Each
 from tol3d.units import Quantity
 
 GRADE: Final = "iso_1328_2"

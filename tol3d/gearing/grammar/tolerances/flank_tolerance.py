@@ -6,7 +6,6 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from tol3d.distributions.csv_table import csv_table
 from tol3d.files import Files
 from tol3d.gearing.draws.flank_record import FlankRecord
 from tol3d.gearing.effects import Effect
@@ -14,17 +13,15 @@ from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import InternalGearSpec, SpurGearSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.gears import SpurGear
-from tol3d.gears.flank import LEFT, RIGHT, Flank
 from tol3d.gears.iso1328 import CLASSES, FlankTolerances, flank_tolerances
-from tol3d.scene.entry import AboutOne, Entry
-from tol3d.scene.move import MoveSpec
+from tol3d.gears.toothed_gear import LEFT, RIGHT, Flank
+from tol3d.scene.bases import MoveSpec, PartSpec, ToleranceEntry
+from tol3d.scene.entry import AboutOne, Contradiction, Entry
 from tol3d.scene.name import Name
-from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Contradiction
-from tol3d.scene.tolerance import ToleranceEntry
+from tol3d.statistics.distributions.csv_table import csv_table
 from tol3d.strict import Strict, refused
-from tol3d.system.draw import Draw
+from tol3d.study.system.draw import Draw
 from tol3d.units import MICRO_SIGNS, UNITS, shown
 
 

@@ -7,8 +7,6 @@ from typing import Any, ClassVar, Literal, Protocol
 
 from pydantic import Field
 
-from tol3d.distributions import Distribution
-from tol3d.distributions.derived import Derived, Scale
 from tol3d.files import Files
 from tol3d.gearing.effects import CombinedEffect, Effect, LinkDeviation
 from tol3d.gearing.grammar.moves import LinkSpec, MeshSpec, ReducerSpec
@@ -16,13 +14,12 @@ from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.gearing.shafts import Carried, Mesh
 from tol3d.gears import BevelPair, Gear
 from tol3d.scene import Scene
+from tol3d.scene.bases import MoveSpec, PartSpec, ToleranceSpec
 from tol3d.scene.direction import At
-from tol3d.scene.entry import AboutOne, Entry
-from tol3d.scene.move import MoveSpec
+from tol3d.scene.entry import AboutOne, Contradiction, Entry, Reference
 from tol3d.scene.name import Name
-from tol3d.scene.part import PartSpec
-from tol3d.scene.reference import Contradiction, Reference
-from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.derived import Derived, Scale
 from tol3d.units import Dimension
 
 Unit = Literal["um", "mrad", "K", "arcmin"]

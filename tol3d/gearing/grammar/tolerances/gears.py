@@ -4,17 +4,17 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
-from tol3d.distributions.derived import Scale
 from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
 from tol3d.gearing.grammar.parts import GearSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, Nominal, Unit, in_direction
 from tol3d.gears import Gear, InternalGear
 from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.tooth_measures import OverPins, PinScale, Span, ToothMeasure
+from tol3d.scene.bases import Length
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
-from tol3d.scene.part import Length
+from tol3d.statistics.distributions.derived import Scale
 from tol3d.strict import Strict, refused
 from tol3d.units import Dimension
 

@@ -7,7 +7,6 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.distributions.base import Stays
 from tol3d.errors import GeometryError, InputError, SceneError
 from tol3d.files import Files
 from tol3d.gearing.draws.normal_pitch_draw import NormalPitchDraw
@@ -30,11 +29,12 @@ from tol3d.gearing.grammar.tolerances.flank_tolerance import (
     no_word,
 )
 from tol3d.gears import SpurGear
+from tol3d.scene.bases import Length
 from tol3d.scene.listed import listed
-from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
+from tol3d.statistics.distributions.base import Stays
 from tol3d.strict import Strict, refused
-from tol3d.system.draw import Draw
+from tol3d.study.system.draw import Draw
 from tol3d.units import Of, Quantity
 
 Arcs = Annotated[tuple[Annotated[Quantity, Of("length")], ...], listed("lengths", 3)]

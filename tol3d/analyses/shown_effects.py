@@ -1,0 +1,133 @@
+"""Effects as tables: for each measure the effect of every contributor, and the matrix of all as a file.
+
+The matrix of contributors and measures as a chart: shares of a measure's total change.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Final
+
+from tol3d.analyses.tolerance_effects import ContributorEffects, Effects, Index, MeasureEffects
+from tol3d.report.chart import Chart, Charts
+from tol3d.report.declared import declared_table
+from tol3d.report.number import measured_text, share_text
+from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, title, titled
+from tol3d.report.share_charts import matrix
+from tol3d.study.runs.summary.shows import Computed, Shows, columns_of
+
+MOST_SHOWN: Final = 15
+"""Contributors of a measure."""
+WORDS: Final = (
+    "per unit: change of the measure per unit of the deviation, at the mean build; over all: range of the measure over "
+    "the whole tolerance, the others at their means; first, total: Sobol' indices, the share of the variance of a "
+    "contributor alone, and with all its interactions; ± 95 %"
+)
+POSITIONS: Final[Mapping[str, str]] = {
+    "averaged": "at a position, averaged over positions",
+    "input": "the position is an input",
+    "none": "",
+}
+
+
+def effects_report(found: Effects) -> Page:
+    """Effects of contributors on each measure, the largest first."""
+    head = Line(((found.scene, "bold"), (f" · effects of contributors, {found.evaluations} builds", "")))
+    blocks: list[PageItem] = [head]
+    for name, own in found.measures.items():
+        if own.contributors or own.position:
+            blocks += titled(name, _table(own).shortened(MOST_SHOWN))
+        else:
+            blocks.append(title(name))
+        blocks += map(note, _words(own))
+    where = POSITIONS[found.positions]
+    return page(*blocks, BLANK, note(WORDS + (f"; {where}" if where else "")))
+
+
+def _table(own: MeasureEffects) -> Table:
+    parts: list[tuple[str, ContributorEffects]] = list(own.contributors.items())
+    if own.position is not None:
+        parts.append(("position", own.position))
+    ranked = sorted(parts, key=lambda each: -_size(each[1]))
+    return declared_table("", ranked, own.unit)
+
+
+def _size(own: ContributorEffects) -> float:
+    """By which contributors are ranked."""
+    shown = own.shapley or own.total
+    return shown.share if shown is not None else -1.0
+
+
+def _words(own: MeasureEffects) -> Sequence[str]:
+    if not own.contributors and own.position is None:
+        out = "" if own.failing_ppm is None else f", {share_text(own.failing_ppm)} out of limits"
+        return [f"{measured_text(own.mean, own.unit)} in all builds{out}: {own.failures_words}"]
+    spread = [f"mean {measured_text(own.mean, own.unit)}, sigma {measured_text(own.sigma, own.unit)}"]
+    if own.sum_of_first is not None and own.sum_of_total is not None:
+        first, total = own.sum_of_first, own.sum_of_total
+        spread.append(f"sum of first indices {_plain(first)}, of total ones {_plain(total)}")
+    groups = dict.fromkeys(tuple(each.together) for each in own.contributors.values() if len(each.together) > 1)
+    told = [", ".join(spread)]
+    if groups:
+        together = "; ".join(", ".join(group) for group in groups)
+        told.append(f"indices of correlated contributors are those of all together: {together}")
+    if own.not_seated:
+        told.append(
+            f"{own.not_seated} of {own.builds} builds could not be assembled: left out of indices, counted as failures"
+        )
+    if own.failing_ppm is not None:
+        by = "shares by " if own.failures_by else ""
+        told.append(f"failures: {share_text(own.failing_ppm)} of {own.builds} builds; {by}{own.failures_words}")
+    return told
+
+
+def _plain(own: Index) -> str:
+    return f"{own.share:.2f} ±{(own.high - own.low) / 2:.2f}"
+
+
+@dataclass(frozen=True)
+class EffectRow:
+    """Effect of a contributor on a measure, with all digits."""
+
+    of: ContributorEffects
+    contributor: Annotated[str, Shows("contributor")]
+    measure_unit: Annotated[str, Shows("measure unit")]
+    own_unit = Computed(Shows("contributor unit"), lambda own: own.of.unit)
+    slope = Computed(Shows("slope", "g"), lambda own: own.of.slope)
+    change = Computed(Shows("change", "g"), lambda own: own.of.change)
+    indices = Computed(Shows("{key}", "g"), lambda own: _numbers(own.of))
+
+
+def _numbers(own: ContributorEffects) -> Mapping[str, float | None]:
+    """Each index, and the ends of its 95 %."""
+    ends = {"": "share", "_low_95": "low", "_high_95": "high"}
+    names = [name for name, shows in columns_of(own).items() if shows.form == "index"]
+    return {f"{name}{end}": getattr(getattr(own, name), key, None) for name in names for end, key in ends.items()}
+
+
+def whole_table(found: Effects) -> Table:
+    """A row for each measure and contributor, all numbers with all their digits."""
+    rows = []
+    for name, own in found.measures.items():
+        parts = {**own.contributors, **({"position": own.position} if own.position else {})}
+        for contributor, each in parts.items():
+            rows.append((name, EffectRow(each, contributor, own.unit)))
+    return declared_table("measure", rows)
+
+
+def effects_chart(found: Effects) -> Chart:
+    """Changes over the whole tolerance, as shares of their sum for each measure."""
+    changes = {
+        name: {contributor: each.change or 0.0 for contributor, each in own.contributors.items()}
+        for name, own in found.measures.items()
+    }
+    percents = {
+        name: {each: 100.0 * own / total if (total := sum(its.values())) > 0.0 else 0.0 for each, own in its.items()}
+        for name, its in changes.items()
+    }
+    title = f"{found.scene}   ·   change over the whole tolerance"
+    return matrix(percents, title, "in % of the sum of the changes by all contributors")
+
+
+def effects_charts(found: Effects) -> Charts:
+    """The matrix alone."""
+    return Charts([[effects_chart(found)]])

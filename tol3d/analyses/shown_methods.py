@@ -1,0 +1,219 @@
+"""Methods side by side as tables: for each measure one row per method, and the worst builds found.
+
+Methods side by side as charts: the intervals by method over each measure's limits.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Final
+
+import numpy as np
+
+from tol3d.analyses.methods_section import BuildFound, MeasureMethods, Methods
+from tol3d.report.chart import Chart, Charts, Mark, Names, Panel, Range, Role
+from tol3d.report.declared import declared_table
+from tol3d.report.measure_charts import spanned
+from tol3d.report.number import UNIT_SIGNS, limit_text, measured_text, number_text, short_text
+from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, titled, warning
+from tol3d.study.runs.summary.shows import Computed, Shows
+from tol3d.study.system.contributor import Contributor
+
+MOST_SHOWN: Final = 12
+"""Contributors of a worst build."""
+NOTHING: Final = "–"
+NO_SLOPE: Final = "no slope at the mean build, such as of an amount: nothing by slopes, no RSS"
+WORDS: Final = (
+    "worst found: the worst of a search among builds within the tolerances, from several builds and positions; worse "
+    "ones may exist. By slopes: sum of all half tolerances at the mean build. RSS: root of the sum of their squares. A "
+    "half tolerance is half of a contributor's effect between its limits, ±3 sigma for laws without limits. Modified "
+    "RSS: RSS × C_f, C_f = 1 + 0.5 (WC − RSS)/(RSS (√n − 1)), WC by slopes, n contributors with an effect"
+)
+
+
+def methods_report(found: Methods, contributors: Sequence[Contributor]) -> Page:
+    """A table a measure.
+
+    Args:
+        found: by all methods.
+        contributors: of the scene.
+    """
+    method = "analytic" if found.method == "analytic" else "3D simulation"
+    blocks: list[PageItem] = [Line(((found.scene, "bold"), (f" · methods side by side, {method}", "")))]
+    for name, own in found.measures.items():
+        blocks += titled(f"{name}: {_limits(own)}", intervals_table(own))
+        blocks += _told(own)
+        if own.worst is not None:
+            blocks += _builds(own, contributors)
+    return page(*blocks, BLANK, note(WORDS), note(f"builds that were evaluated: {found.evaluations}"))
+
+
+@dataclass(frozen=True)
+class IntervalRow:
+    """The interval of a measure by a method, in its unit."""
+
+    unit: str
+    between_limits: float | None
+    low: Annotated[float | None, Shows("low")]
+    high: Annotated[float | None, Shows("high")]
+    sign = Computed(Shows("unit", "words"), lambda own: "′, ″" if own.unit == "arcmin" else UNIT_SIGNS[own.unit])
+    half_range = Computed(Shows("half range"), lambda own: own.half)
+    share = Computed(
+        Shows("of the limits", ".1f", "%", optional=True),
+        lambda own: None if own.half is None or not own.between_limits else 2 * own.half / own.between_limits,
+    )
+
+    @property
+    def half(self) -> float | None:
+        """Half of it."""
+        return None if self.low is None or self.high is None else (self.high - self.low) / 2
+
+
+@dataclass(frozen=True)
+class DeviationRow:
+    """The deviations of a contributor in the worst builds."""
+
+    builds: Annotated[Mapping[str, str], Shows("{key}", "words")]
+    unit_sign: Annotated[str, Shows("unit", "words")]
+
+
+def intervals_table(own: MeasureMethods) -> Table:
+    """A row a method."""
+    width = None if own.lower_limit is None or own.upper_limit is None else own.upper_limit - own.lower_limit
+    return declared_table("", [(words, IntervalRow(own.unit, width, *ends)) for words, *ends in intervals_of(own)])
+
+
+def intervals_of(own: MeasureMethods) -> Iterator[tuple[str, float | None, float | None]]:
+    """Each method with its low and its high estimate, in the measure's unit; None for one that is not known."""
+    if own.worst is not None:
+        low, high = own.worst.low, own.worst.high
+        yield "worst found", None if low is None else low.measured, None if high is None else high.measured
+    for words, half in (("worst by slopes", own.by_slopes), ("modified RSS", own.modified_rss), ("RSS", own.rss)):
+        known = None if own.mean is None or half is None else (own.mean - half, own.mean + half)
+        yield words, *(known or (None, None))
+    sample = own.simulation
+    yield "simulation, ±3 sigma", sample.low_3sigma, sample.high_3sigma
+    yield "simulation, 0.135 % and 99.865 %", sample.p0_135, sample.p99_865
+    if sample.law is not None:
+        yield f"fitted law, {sample.law.name}", sample.law.low, sample.law.high
+    yield "least and largest trial", sample.sample_min, sample.sample_max
+
+
+def _limits(own: MeasureMethods) -> str:
+    given = [
+        f"{sign} {limit_text(limit, own.unit)}"
+        for sign, limit in (("≥", own.lower_limit), ("≤", own.upper_limit))
+        if limit is not None
+    ]
+    return ", ".join(given) or "no limits"
+
+
+def _told(own: MeasureMethods) -> Iterator[PageItem]:
+    sample, law = own.simulation, own.simulation.law
+    count = f"{own.contributors} contributor{'s' if own.contributors != 1 else ''} with a slope"
+    factor = f"C_f {own.factor:.3f}" if own.factor is not None else "no C_f of fewer than two"
+    by_slopes = own.nothing_acts or (f"{count}, {factor}" if own.by_slopes is not None else NO_SLOPE)
+    yield note(f"mean build {measured_text(own.mean, own.unit)}; {by_slopes}")
+    shape = [
+        f"{word} {NOTHING if value is None else f'{value:.3f}'}"
+        for word, value in (("skewness", sample.skewness), ("excess kurtosis", sample.kurtosis))
+    ]
+    failed = f", {sample.failed} failed" if sample.failed else ""
+    words = f"{sample.trials} trials{failed}: mean {measured_text(sample.mean, own.unit)}, "
+    words += f"sigma {measured_text(sample.sigma, own.unit)}, {', '.join(shape)}"
+    yield note(words)
+    if law is not None:
+        parameters = ", ".join(f"{name} {number_text(float(f'{value:.5g}'))}" for name, value in law.parameters.items())
+        verdict = "not rejected" if law.p_value > REJECTED else "rejected, the nearest of four"
+        test = f"Anderson–Darling A² {law.statistic:.3f}, p {law.p_value:.3g} by {law.replicates} refitted samples"
+        yield note(f"fitted law {law.name} ({parameters}): {test} of {law.trials} trials: {verdict}")
+    if sample.beyond_worst:
+        few = f"{sample.beyond_worst} of {sample.trials} trials"
+        yield warning(f"{few} lie beyond the worst found: laws without limits of their own draw beyond ±3 sigma")
+    if own.worst is None and not own.nothing_acts:
+        yield note("worst case: not looked for" + (", it would take too many builds" if own.contributors else ""))
+    elif own.worst is not None and own.worst.unseated is not None:
+        status = own.worst.unseated.status
+        yield warning(
+            f"builds within the tolerances cannot be assembled ({status}); {own.worst.met} were met in the search"
+        )
+
+
+REJECTED: Final = 0.05
+
+
+def _builds(own: MeasureMethods, contributors: Sequence[Contributor]) -> Iterator[PageItem]:
+    """The deviations of the worst builds, those that differ first."""
+    assert own.worst is not None
+    builds = {word: build for word, build in (("lowest", own.worst.low), ("highest", own.worst.high)) if build}
+    if own.worst.unseated is not None and own.worst.unseated.measured is None:
+        builds["cannot be assembled"] = own.worst.unseated
+    if not builds:
+        return
+    rows = []
+    for each in contributors:
+        if any(each.name in build.deviations for build in builds.values()):
+            deviations = {f"{word}: {build.status}": _deviations(build, each.name) for word, build in builds.items()}
+            rows.append((each.name, DeviationRow(deviations, UNIT_SIGNS[each.unit])))
+    yield declared_table("worst found", rows).shortened(MOST_SHOWN)
+    yield note(f"by {own.worst.evaluations} builds")
+
+
+def _deviations(build: BuildFound, name: str) -> str:
+    values = build.deviations.get(name, ())
+    return ", ".join(number_text(float(f"{value:.4g}")) for value in values)
+
+
+MOST: Final = 12
+"""Measures in one picture."""
+COLUMNS: Final = 2
+WIDTH: Final = 7.2  # inch, of a chart
+ROLES: Final[Mapping[str, Role]] = {
+    "worst found": "plain",
+    "worst by slopes": "soft",
+    "modified RSS": "series-1",
+    "RSS": "series-4",
+    "simulation, ±3 sigma": "series-0",
+    "simulation, 0.135 % and 99.865 %": "series-2",
+    "least and largest trial": "soft",
+}
+
+
+def methods_charts(found: Methods) -> Charts:
+    """The measures that use most of their limits, MOST at most."""
+    most = sorted(found.measures, key=lambda name: -_used(found.measures[name]))[:MOST]
+    charts = [methods_chart(name, own) for name, own in found.measures.items() if name in most]
+    rows = [charts[k : k + COLUMNS] for k in range(0, len(charts), COLUMNS)]
+    return Charts(rows, found.scene, WIDTH * len(rows[0]))
+
+
+def methods_chart(name: str, own: MeasureMethods) -> Chart:
+    """A row for each method with its interval; dotted the mean build."""
+    intervals = [*intervals_of(own)]
+    rows = [
+        Range(row, low, high, None, ROLES.get(words, "series-3"), words)
+        for row, (words, low, high) in enumerate(intervals)
+    ]
+    limits = [(word, end) for word, end in (("LSL", own.lower_limit), ("USL", own.upper_limit)) if end is not None]
+    marks = [Mark(limit, "limit", label=f"{word} {limit_text(limit, own.unit)}") for word, limit in limits]
+    marks += [Mark(own.mean, "guide", label="mean build")] if own.mean is not None else []
+    ends = [end for _, low, high in intervals for end in (low, high) if end is not None]
+    across = spanned(name, np.array([*ends, *(mark.value for mark in marks)]), own.unit)
+    table = [
+        (words, f"{short_text(low, own.unit)} to {short_text(high, own.unit)}")
+        for words, low, high in intervals
+        if low is not None and high is not None
+    ]
+    panel = Panel(Names([words for words, _, _ in intervals]), rows, marks)
+    said = "" if limits else "no limits"
+    return Chart(f"{name} by methods", across, [panel], name, said, table)
+
+
+def _used(own: MeasureMethods) -> float:
+    """3 sigma of the simulation over the distance to the nearest limit; 0 without limits."""
+    low, high, mean = own.simulation.low_3sigma, own.simulation.high_3sigma, own.simulation.mean
+    if low is None or high is None or mean is None:
+        return 0.0
+    half = (high - low) / 2
+    margins = [] if own.lower_limit is None else [mean - own.lower_limit]
+    margins += [] if own.upper_limit is None else [own.upper_limit - mean]
+    return max((half / margin if margin > 0.0 else float("inf") for margin in margins), default=0.0)

@@ -1,0 +1,140 @@
+"""Rare events as tables: probability beyond each limit, and the most likely build beyond it.
+
+Charts of rare events: probability beyond each limit by each method, and contributors to the design points.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Final
+
+import numpy as np
+
+from tol3d.analyses.rare_section import DesignBuild, LimitLeft, RareEvents
+from tol3d.report.chart import Axis, Chart, Charts, Lengths, Names, Panel, Points, Range, Role, Series, Sign
+from tol3d.report.declared import declared_table
+from tol3d.report.number import number_text, ppm_text
+from tol3d.report.page import BLANK, Line, Page, PageItem, note, page, titled, warning
+from tol3d.study.runs.summary.shows import Shows
+
+MOST_SHOWN: Final = 8
+"""Contributors of a design point."""
+METHOD_WORDS: Final = {
+    "importance": "importance sampling about the design points",
+    "subset": "subset simulation",
+    "form": "first order alone",
+    "sorm": "second order alone",
+}
+BETA_WORDS: Final = (
+    "β: distance of the design point, the most likely build beyond the limit, in standard normals; first order: Φ(−β), "
+    "averaged over positions"
+)
+SUBSET_WORDS: Final = (
+    "subset simulation takes about 100000 builds for 10 to 15 % at 0.1 ppm; β: of the failing build nearest to the "
+    "mean that was met, an upper bound"
+)
+
+
+def rare_report(found: RareEvents) -> Page:
+    """Probabilities of leaving limits, then the design point of each."""
+    table = declared_table("", [(own.measure, own) for own in found.limits])
+    blocks: list[PageItem] = [Line(((found.scene, "bold"), (" · fraction out of limits", ""))), BLANK, table]
+    blocks += [note(words) for words in _notes(found.limits)]
+    for own in found.limits:
+        blocks += [warning(f"{own.measure}, {own.words}: {words}") for words in own.warnings]
+    for own in found.limits:
+        if own.design_point is not None:
+            blocks += _design_point(own, own.design_point)
+    return page(*blocks)
+
+
+def _notes(limits: Sequence[LimitLeft]) -> Iterator[str]:
+    methods = dict.fromkeys(own.method for own in limits)
+    yield f"ppm: by {', '.join(METHOD_WORDS[own] for own in methods)}; builds that cannot be assembled count as out"
+    yield SUBSET_WORDS if set(methods) == {"subset"} else BETA_WORDS
+    if any(own.second_order_ppm is not None for own in limits):
+        yield "second order: with the curvatures of the limit, by Hohenbichler and Rackwitz"
+    for own in limits:
+        if own.unseated_percent > 0.0:
+            share = f"{own.unseated_percent:.1f} % of the failing builds"
+            yield f"{own.measure}, {own.words}: {share} cannot be assembled"
+
+
+@dataclass(frozen=True)
+class DesignRow:
+    """A contributor in the most likely build beyond a limit."""
+
+    deviation: Annotated[str, Shows("deviation")]
+    unit_sign: Annotated[str, Shows("unit", "words")]
+    share: Annotated[float, Shows("share of the distance [%]", ".1f")]
+
+
+def _design_point(own: LimitLeft, build: DesignBuild) -> Sequence[PageItem]:
+    """Deviations of the contributors that lead there, the largest parts first."""
+    rows = []
+    for each in build.contributors[:MOST_SHOWN]:
+        told = ", ".join(number_text(round(value, 3) + 0.0) for value in each.deviations)
+        unit = "µm" if each.unit == "um" else each.unit
+        rows.append((each.name, DesignRow(told, unit, each.percent)))
+    side = "below" if own.side == "low" else "above"
+    kind = "within" if build.beta < 0.0 else side
+    title = f"{own.measure}: the most likely build {kind} its {'lower' if own.side == 'low' else 'upper'} limit"
+    at = ", ".join(f"{name} {number_text(round(value, 2))}" for name, value in build.positions.items())
+    return [*titled(title, declared_table("", rows)), *([note(at)] if at else [])]
+
+
+WIDTH: Final = 12.0  # inch
+MOST_BARS: Final = 8
+MOST_LIMITS: Final = 30
+MOST_POINTS: Final = 6
+LEAST_PPM: Final = 1e-12
+SAMPLED: Final = "by sampling, with its interval of 95 %"
+MARKS: Final[Sequence[tuple[str, str, Sign, Role]]] = (
+    ("first_order_ppm", "first order", "diamond", "series-1"),
+    ("second_order_ppm", "second order", "square", "series-3"),
+)
+
+
+def rare_charts(found: RareEvents) -> Charts:
+    """The limits that are left most, and the design points of the first of them."""
+    ranked = sorted(found.limits, key=lambda own: -(own.ppm or 0.0))[:MOST_LIMITS]
+    points = [design_point_chart(own) for own in ranked if own.design_point is not None][:MOST_POINTS]
+    rows = [[limits_chart(ranked)], *([*points[k : k + 2]] for k in range(0, len(points), 2))]
+    return Charts(rows, f"{found.scene} · fraction out of limits", WIDTH)
+
+
+def limits_chart(limits: Sequence[LimitLeft]) -> Chart:
+    """A row for each limit with its fraction by each method."""
+    series: list[Series] = []
+    for row, own in enumerate(limits):
+        if own.method in ("importance", "subset") and (own.ppm or (own.ppm_interval and own.ppm_interval[1] > 0.0)):
+            low, high = (max(end, LEAST_PPM) for end in own.ppm_interval) if own.ppm_interval else (None, None)
+            series.append(Range(row, low, high, own.ppm or None, "series-0", label=SAMPLED))
+    for key, label, sign, role in MARKS:
+        known = [(value, row) for row, own in enumerate(limits) if (value := own.value(key))]
+        if known:
+            x, y = np.array(known, dtype=float).T
+            series.append(Points(x, y, role, label, sign))
+    values = [each for own in series if isinstance(own, Range) for each in (own.low, own.middle, own.high) if each]
+    values += [each for own in series if isinstance(own, Points) for each in own.x.tolist()]
+    low, high = (
+        (10.0 ** np.floor(np.log10(min(values))), 10.0 ** np.ceil(np.log10(max(values)))) if values else (1e-3, 1e6)
+    )
+    across = Axis("builds beyond the limit", low, max(high, 10 * low), "ppm", log=True)
+    names = Names([f"{own.measure} {own.words}" for own in limits])
+    table = [(name, f"{ppm_text(own.ppm)} ppm") for name, own in zip(names.names, limits, strict=True)]
+    instead = "" if series else "nothing is known of these limits"
+    return Chart("fractions beyond limits", across, [Panel(names, series)], "", "", table, instead)
+
+
+def design_point_chart(own: LimitLeft) -> Chart:
+    """Contributors to the most likely build beyond a limit, the largest first."""
+    assert own.design_point is not None
+    every = own.design_point.contributors
+    shown, rest = every[:MOST_BARS], every[MOST_BARS:]
+    percents = [each.percent for each in shown] + ([sum(each.percent for each in rest)] if rest else [])
+    names = [each.name for each in shown] + ([f"{len(rest)} other{'s' if len(rest) > 1 else ''}"] if rest else [])
+    texts = [f"{percent:.1f}" for percent in percents]
+    across = Axis("share of the distance to the design point", 0.0, max(percents, default=1.0) or 1.0, "%")
+    title = f"{own.measure} {own.words}, β {own.design_point.beta:.2f}"
+    panel = Panel(Names(names), [Lengths(percents, texts, "series-0")])
+    return Chart(f"design point of {title}", across, [panel], title, "", [*zip(names, texts, strict=True)])

@@ -1,0 +1,187 @@
+"""The shaft of a ball screw.
+
+A socket for a ball.
+
+A nut with an ear in which a ball sits.
+
+A rod between two balls.
+
+A ring with ears in which balls sit.
+
+A ring-involute spherical gear.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.assembly.grammar.builders.builder_spec import BuilderSpec
+from tol3d.assembly.grammar.feature_name import OwnName
+from tol3d.cad.solids.numbered_parts import BallScrew, BallSocket, Nut, Rod, SphericalGear, ThrustRing
+from tol3d.scene.bases import Length
+from tol3d.strict import Strict
+from tol3d.units import Of, Quantity
+
+
+class JournalSpec(Strict):
+    """An end that is turned down."""
+
+    diameter: Length = Field(description="of the journal")
+    length: Length = Field(description="along z")
+
+
+class BallScrewSpec(BuilderSpec):
+    """A shaft along z without its groove; its part's origin is the middle of its bottom."""
+
+    words: ClassVar[str] = "a ball screw"
+
+    kind: Literal["ball_screw"]
+    diameter: Length = Field(description="of the thread")
+    length: Length = Field(description="from end to end, along z")
+    journal: JournalSpec | None = Field(default=None, description="at either end; default: none")
+
+    @property
+    def shape(self) -> BallScrew:
+        """See BuilderSpec."""
+        journal = None if self.journal is None else (self.journal.diameter.internal, self.journal.length.internal)
+        return BallScrew(self.diameter.internal, self.length.internal, journal)
+
+
+class BallSocketSpec(BuilderSpec):
+    """A round housing along z that opens to +z; its part's origin is the centre of its seat."""
+
+    words: ClassVar[str] = "a socket"
+
+    kind: Literal["ball_socket"]
+    ball_diameter: Length = Field(description="of the seat")
+    mouth: Length | None = Field(
+        default=None, description="diameter of the opening; default: as wide as the ball, a hemisphere"
+    )
+    diameter: Length = Field(description="outside")
+    height: Length = Field(description="from the bottom to the centre of the seat, along z")
+
+    @property
+    def shape(self) -> BallSocket:
+        """See BuilderSpec."""
+        mouth = self.ball_diameter if self.mouth is None else self.mouth
+        return BallSocket(self.ball_diameter.internal, mouth.internal, self.diameter.internal, self.height.internal)
+
+
+class NutSpec(BuilderSpec):
+    """A cylinder along z with an ear at +x; its part's origin is the middle of its bottom."""
+
+    words: ClassVar[str] = "a nut"
+
+    kind: Literal["nut"]
+    diameter: Length = Field(description="outside")
+    length: Length = Field(description="along z")
+    bore: Length = Field(description="diameter; the thread is not cut")
+    reach: Length = Field(description="from the axis to the centre of the seat, which is in the top of the ear")
+    ear_width: Length = Field(description="along y")
+    ball_diameter: Length = Field(description="of the seat")
+
+    @property
+    def shape(self) -> Nut:
+        """See BuilderSpec."""
+        return Nut(
+            self.diameter.internal,
+            self.length.internal,
+            self.bore.internal,
+            self.reach.internal,
+            self.ear_width.internal,
+            self.ball_diameter.internal,
+        )
+
+
+class RodSpec(BuilderSpec):
+    """A round rod along z; its part's origin is the centre of its bottom ball."""
+
+    words: ClassVar[str] = "a rod"
+
+    kind: Literal["rod"]
+    length: Length = Field(description="between the centres of both balls, along z")
+    diameter: Length = Field(description="of the rod")
+    ball_diameter: Length = Field(description="of both balls")
+
+    @property
+    def shape(self) -> Rod:
+        """See BuilderSpec."""
+        return Rod(self.length.internal, self.diameter.internal, self.ball_diameter.internal)
+
+
+class EarSpec(Strict):
+    """An ear with a seat in its bottom."""
+
+    angle: Annotated[Quantity, Of("angle")] = Field(description="of its middle, from +x towards +y")
+
+
+class ThrustRingSpec(BuilderSpec):
+    """A ring about z; its part's origin is the middle of its bottom, in whose plane the balls' centres lie."""
+
+    words: ClassVar[str] = "a thrust ring"
+
+    kind: Literal["thrust_ring"]
+    inner_diameter: Length = Field(description="of its bore")
+    outer_diameter: Length = Field(description="without the ears")
+    thickness: Length = Field(description="along z, of the ears as well")
+    radius: Length = Field(description="of the circle on which the centres of the seats lie")
+    ear_width: Length = Field(description="of all ears")
+    ball_diameter: Length = Field(description="of all seats")
+    ears: Mapping[OwnName, EarSpec] = Field(min_length=1, description="by name, all alike")
+
+    @property
+    def shape(self) -> ThrustRing:
+        """See BuilderSpec."""
+        return ThrustRing(
+            self.inner_diameter.internal,
+            self.outer_diameter.internal,
+            self.thickness.internal,
+            self.radius.internal,
+            self.ear_width.internal,
+            self.ball_diameter.internal,
+            tuple((name, ear.angle.internal) for name, ear in self.ears.items()),
+        )
+
+
+Angle = Annotated[Quantity, Of("angle")]
+USUAL_PRESSURE_ANGLE = math.radians(20)
+
+
+class BlindBoreSpec(Strict):
+    """A hole from the bottom along z."""
+
+    diameter: Length = Field(description="of the bore")
+    depth: Length = Field(description="from the bottom")
+
+
+class SphericalGearSpec(BuilderSpec):
+    """The profile of a spur gear turned about its pole at +z; its part's origin is its centre."""
+
+    words: ClassVar[str] = "a spherical gear"
+
+    kind: Literal["spherical_gear"]
+    teeth: int = Field(ge=3, description="of the spur gear; half of them would be rings all the way round")
+    module: Length = Field(description="by which the pitch sphere has a diameter of module times teeth")
+    pole: Literal["tooth", "space"] = Field(description="what is at the pole; two gears mesh if it differs")
+    reach: Angle = Field(description="from the pole to the edge of its flat bottom; what rings end before it are there")
+    pressure_angle: Angle | None = Field(default=None, description="default: 20 deg")
+    thinned: Length | None = Field(
+        default=None,
+        description="by how much a tooth is thinner than half the pitch, on the pitch sphere; default: not at all",
+    )
+    bore: BlindBoreSpec | None = Field(default=None, description="default: none")
+
+    @property
+    def shape(self) -> SphericalGear:
+        """See BuilderSpec."""
+        return SphericalGear(
+            self.teeth,
+            self.module.internal,
+            USUAL_PRESSURE_ANGLE if self.pressure_angle is None else self.pressure_angle.internal,
+            self.reach.internal,
+            self.pole == "tooth",
+            0.0 if self.thinned is None else self.thinned.internal,
+            None if self.bore is None else (self.bore.diameter.internal, self.bore.depth.internal),
+        )

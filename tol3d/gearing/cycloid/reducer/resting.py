@@ -1,0 +1,222 @@
+"""Output turn of an RV reducer with bearing play, by each method: until a torque on it rests.
+
+Cranks are taken where first contact without play would have them (see turning.py), and may turn from there between both
+flanks of their planets. The flank that holds all cranks holds; where a planet's other flank overlaps, as of a tight
+build, that one holds nothing. Rates of the analytic method follow from the forces at rest.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from tol3d.gearing.cycloid.exact.contact_kernel import first_contacts
+from tol3d.gearing.cycloid.exact.mesh_kernel import planet_turns
+from tol3d.gearing.cycloid.exact.rest import RestStage
+from tol3d.gearing.cycloid.exact.rest_kernel import NOT_HELD, rests
+from tol3d.gearing.cycloid.first_order.linear_rest import Forces, LinearRest
+from tol3d.gearing.cycloid.first_order.turns_kernel import first_order_turns
+from tol3d.gearing.cycloid.model.stage import Deviated, Play
+from tol3d.gearing.cycloid.reducer.deviated import RVDeviated
+from tol3d.gearing.cycloid.reducer.first_stage import (
+    OneMesh,
+    add_rates,
+    crank_turns,
+    first_order_mesh,
+    held_stage,
+    placed_mesh,
+    throw_turn,
+)
+from tol3d.gearing.cycloid.reducer.rv_set import RVSet
+from tol3d.gearing.cycloid.reducer.trials import NO_CONTACT, NO_FIT, NO_REST
+from tol3d.gearing.cycloid.reducer.turning import ExactTurning, LinearTurning, Turned, Turning, leans_of, led_angles
+from tol3d.gearing.reducers.trials import Solver
+from tol3d.gears import LEFT, RIGHT
+from tol3d.numerics.arrays import Array, Places
+from tol3d.numerics.cone_programme import cone_programmes
+from tol3d.numerics.plane import as_complex, as_points, evenly
+from tol3d.numerics.programme import NO_ROOM, OK, STALLED
+from tol3d.study.system.method import ANALYTIC_METHOD
+
+
+def rest_rates(own: RVSet, deviated: RVDeviated, turns: Array, phis: Array, forces: Forces) -> RVDeviated:
+    """Rates of trials, in the form of their deviations [rad/mm or rad/rad].
+
+    A tilt closes gaps whatever its sign: its rates are those on its side.
+
+    Args:
+        turns: of the output (trials,).
+        phis: crank angles (trials,) [rad].
+    """
+    found = RVDeviated.nothing(own, len(turns))
+    _of_planets(own, found, turns, forces)
+    _of_pins(own, found, deviated.disc_tilts, phis, forces)
+    _of_bearings(own, found.stage, phis, forces)
+    found.disc_play[...] = np.swapaxes(forces.disc_play, 1, 2)
+    found.carrier_play[...] = forces.carrier_play
+    return found
+
+
+def _of_planets(own: RVSet, found: RVDeviated, turns: Array, forces: Forces) -> None:
+    """Add the rates of the teeth; planets lie where the cranks do, whose bearings hold them."""
+    for crank in range(own.cranks):
+        planets = np.full(len(turns), crank)
+        for side, flank in enumerate((RIGHT, LEFT)):
+            add_rates(own, found, turns, planets, flank, forces.planets[:, crank, side])
+    found.stage.carrier_holes[...] = 0.0
+    found.stage.carrier_offsets[...] = 0.0
+
+
+def _of_pins(own: RVSet, found: RVDeviated, tilts: Array, phis: Array, forces: Forces) -> None:
+    profile, stage, rows = own.profile, own.linear, np.arange(len(phis))[:, None]
+    nothing, azimuths = Deviated.nothing(1, profile.pins, own.discs, own.cranks), evenly(profile.pins)
+    for disc in range(own.discs):
+        force = forces.pins[:, disc]
+        _, lever, normal = stage.nominal_gaps(nothing, disc, phis, None)
+        lobes = stage.lobes_at(disc, phis)
+        found.stage.pins[...] += as_points(force * normal * np.exp(-1j * azimuths))
+        found.stage.pin_radii[...] -= force
+        np.add.at(found.stage.lobe_profile[:, disc], (rows, lobes), -force)
+        pitch = lever * profile.shortening / profile.pitch_radius
+        np.add.at(found.stage.lobe_pitch[:, disc], (rows, lobes), -force * pitch)
+        if own.width is not None:
+            across = -1j * normal * np.exp(1j * phis / profile.lobes)[:, None]
+            side = np.sign((np.conj(across) * as_complex(tilts[:, disc])[:, None]).real)
+            found.disc_tilts[:, disc] = as_points(-own.width / 2 * (force * side * across).sum(axis=1))
+
+
+def _of_bearings(own: RVSet, found: Deviated, phis: Array, forces: Forces) -> None:
+    ahead = np.exp(1j * phis * (1 + 1 / own.profile.lobes))
+    discs, carrier = as_complex(forces.discs), -as_complex(forces.carrier)
+    swung = 1j * own.profile.eccentricity * np.exp(1j * own.linear.throws)
+    thrown = -discs * np.conj(ahead)[:, None, None]
+    found.disc_holes[...] = np.swapaxes(forces.discs, 1, 2)
+    found.disc_offsets[...] = -as_points(discs.sum(axis=1))
+    found.crank_errors[...] = as_points(thrown)
+    if own.first is None:  # else those of planets
+        found.crank_phases[...] = (np.conj(thrown) * swung).real.sum(axis=2)
+    found.carrier_holes[...] = as_points(carrier)
+    found.carrier_offsets[...] = as_points(carrier.sum(axis=1))
+
+
+AT_ONCE: Final = 1024  # rests of the analytic method in memory, some 10 kB each
+MEANS: Final = {OK: OK, NO_ROOM: NO_FIT, STALLED: NO_REST, NOT_HELD: NO_CONTACT}
+
+
+@dataclass(frozen=True)
+class ExactResting:
+    """Rest of a reducer in finite geometry."""
+
+    own: RVSet
+
+    def turned(self, deviated: RVDeviated, turns: Array, sense: int, deflection: float | None = None) -> Turned:
+        """See Turning; rest position, and the pin that carries most."""
+        own = self.own
+        beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
+        play = play_of(own, deviated, turns, beta, placed_mesh)
+        stage = RestStage.of(own)
+        phis, leans = led_angles(own, turns, beta), leans_of(own, deviated)
+        found = stage.rests(held_stage(own, deviated), phis, play, float(sense), deflection, leans)
+        codes = np.zeros(found.status.shape, dtype=np.int8)
+        for status, code in MEANS.items():
+            codes[found.status == status] = code
+        places = np.where(codes == OK, found.loads.argmax(axis=-1), -1)
+        near = None if deflection is None else found.near
+        return Turned(found.turns - beta / own.crank_arm, places, planets, near, codes=codes)
+
+
+def play_of(own: RVSet, deviated: RVDeviated, turns: Array, beta: Array, one_mesh: OneMesh) -> Play:
+    """Play of a reducer's bearings and planets, with its cranks beta (trials, positions) ahead."""
+    disc = np.maximum(np.swapaxes(deviated.disc_play, 1, 2), 0.0)
+    carrier = np.maximum(deviated.carrier_play, 0.0)
+    free = np.zeros((*beta.shape, own.cranks, 2))
+    if own.first is None:
+        return Play(disc, carrier, free)
+    for crank in range(own.cranks):
+        for side, flank in enumerate((RIGHT, LEFT)):
+            free[:, :, crank, side] = throw_turn(own, deviated, turns, crank, flank, one_mesh) - beta
+    free[..., 0], free[..., 1] = np.minimum(free[..., 0], 0.0), np.maximum(free[..., 1], 0.0)
+    pair = own.first.pair
+    alpha, arm = pair.working_pressure_angle, pair.wheel.base_radius
+    return Play(disc, carrier, free, (math.cos(alpha) / arm, math.sin(alpha) / arm))
+
+
+@dataclass(frozen=True)
+class LinearResting:
+    """Rest of a reducer to first order."""
+
+    own: RVSet
+
+    def turned(self, deviated: RVDeviated, turns: Array, sense: int, deflection: float | None = None) -> Turned:
+        """See Turning."""
+        own, trials = self.own, len(deviated.sun_thickness)
+        beta, planets = crank_turns(own, deviated, turns, sense, first_order_mesh)
+        phis = np.broadcast_to(own.crank_angles(turns), beta.shape)
+        if turns.shape[1] == 1:
+            phis = led_angles(own, turns, beta)
+        play = play_of(own, deviated, turns, beta, first_order_mesh)
+        found, places, near = np.empty(beta.shape), *(np.empty(beta.shape, dtype=np.int64) for _ in range(2))
+        for position in range(beta.shape[1]):
+            for first in range(0, trials, AT_ONCE):
+                rows = np.arange(first, min(first + AT_ONCE, trials))
+                forces = self._forces(deviated[rows], phis[rows, position], play, (rows, position), sense)
+                found[rows, position] = forces.turns
+                near[rows, position] = (forces.gaps <= (deflection or 0.0)).sum(axis=1)
+                places[rows, position] = np.abs(forces.pins).reshape(len(rows), -1).argmax(axis=1)
+        shifted, counted = phis if turns.shape[1] == 1 else None, None if deflection is None else near
+        return Turned(found - beta / own.crank_arm, places, planets, counted, shifted)
+
+    def rates(self, deviated: RVDeviated, turns: Array, sense: int) -> RVDeviated:
+        """Derivatives of the turn at output turns (trials,) by each deviation, from the forces at rest."""
+        own, at, rates = self.own, turns[:, None], RVDeviated.nothing(self.own, len(turns))
+        beta, _ = crank_turns(own, deviated, at, sense, first_order_mesh)
+        phis = led_angles(own, at, beta)
+        play = play_of(own, deviated, at, beta, first_order_mesh)
+        for first in range(0, len(turns), AT_ONCE):
+            rows = np.arange(first, min(first + AT_ONCE, len(turns)))
+            part = deviated[rows]
+            forces = self._forces(part, phis[rows, 0], play, (rows, 0), sense)
+            rates[rows] = rest_rates(own, part, turns[rows], phis[rows, 0], forces)
+        return rates
+
+    def _forces(self, part: RVDeviated, phis: Array, play: Play, at: tuple[Places, int], sense: int) -> Forces:
+        """Forces of some trials (rows) at a position, given the play of all."""
+        own, (rows, position) = self.own, at
+        played = Play(play.disc[rows], play.carrier[rows], play.crank[rows, position], play.leaving)
+        aside = None if own.width is None else part.disc_tilts * (own.width / 2)
+        return LinearRest.of(own).rests(held_stage(own, part), phis, played, 1 if sense > 0 else -1, aside)
+
+
+def exact_turning(own: RVSet) -> Turning:
+    """Turning of a reducer by the exact method."""
+    return ExactResting(own) if own.plays else ExactTurning(own)
+
+
+def linear_turning(own: RVSet) -> Turning:
+    """Turning of a reducer by the analytic method."""
+    return LinearResting(own) if own.plays else LinearTurning(own)
+
+
+SOLVERS: Final[Mapping[str, Solver]] = {
+    "exact": Solver(
+        exact_turning,
+        lambda own: (cone_programmes.kept and rests.kept if own.plays else first_contacts.kept) and planet_turns.kept,
+    ),
+    ANALYTIC_METHOD: Solver(linear_turning, lambda own: cone_programmes.kept if own.plays else first_order_turns.kept),
+}
+
+
+def linear_rates(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, found: Turned | None = None) -> RVDeviated:
+    """Derivatives of the turn at output turns (trials,) by each deviation, at the contacts found or to be found."""
+    if own.plays:
+        return LinearResting(own).rates(deviated, turns, sense)
+    turning = LinearTurning(own)
+    touching = found or turning.turned(deviated, turns[:, None], sense)
+    return turning.rates(deviated.disc_tilts, turns, touching, sense)
+
+
+def lost_motion_rates(own: RVSet, deviated: RVDeviated, turns: Array) -> RVDeviated:
+    """The same of the free turn between both ends."""
+    return linear_rates(own, deviated, turns, 1).plus(linear_rates(own, deviated, turns, -1), -1.0)

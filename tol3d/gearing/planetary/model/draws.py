@@ -1,0 +1,148 @@
+"""Tolerances of planetary sets: their kinds, the effect of each, and its draw."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Final, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.from_scene.zones import drawn_by
+from tol3d.assembly.zones import Process
+from tol3d.assembly.zones.catalogue import axis_section
+from tol3d.assembly.zones.zone_draw import ZoneDraw
+from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
+from tol3d.gearing.grammar.tolerances.composite import ToothRunOutSpec
+from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, ToothThicknessSpec
+from tol3d.gearing.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
+from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
+from tol3d.gearing.reducers.deviations import Acts
+from tol3d.gearing.reducers.from_scene import drawn, law_of, numbered
+from tol3d.numerics.arrays import Array
+from tol3d.scene import Scene
+from tol3d.scene.direction import At
+from tol3d.scene.entry import kind_of
+from tol3d.statistics.distributions import DeviationLaw, Distribution
+from tol3d.study.system.draw import Draw
+from tol3d.study.system.each_planar import EachOwn, parts_of
+from tol3d.study.system.steepest import Values, steepest_ends
+
+
+@dataclass(frozen=True)
+class EachZone(EachOwn):
+    """Displacements of all planets, each in a zone of its own: outwards and across, one after the other.
+
+    Args:
+        each: that of one planet, of two components.
+    """
+
+    axes: ClassVar[tuple[str, str]] = ("radial", "tangential")
+
+    each: ZoneDraw
+    names: tuple[str, ...]
+
+    @property
+    def distribution(self) -> DeviationLaw:
+        """Distribution of one component."""
+        return self.each.distribution
+
+    @property
+    def words(self) -> str:
+        """See JointDraw."""
+        return f"{self.each.words}, each of {len(self.names)}"
+
+    @property
+    def covariance(self) -> Array:
+        """See JointDraw: planets are independent."""
+        return np.asarray(np.kron(np.eye(len(self.names)), self.each.covariance), dtype=np.float64)
+
+    @property
+    def width(self) -> float:
+        """See Zoned."""
+        return self.each.width
+
+    def sized(self, width: float) -> Self:
+        """See Zoned: all of them."""
+        return replace(self, each=self.each.sized(width))
+
+    def scaled(self, factor: float) -> Self:
+        """See Scalable: all of them."""
+        return replace(self, each=self.each.scaled(factor))
+
+    def ends(self, values: Values, *, turning: bool) -> Array:
+        """See Draw: all of them along the steepest direction, as far as one reaches along it by itself.
+
+        All bores at their worst ends at once would be far rarer than the end of one.
+        """
+        steps, mean = np.sqrt(np.diagonal(self.covariance)), np.array(self.mean(turning=False))
+        return steepest_ends(values, mean, steps, self._reach)
+
+    def _reach(self, slopes: Array) -> Array:
+        """Reach of all components along slopes, each as large a part of its own reach as its slopes are of all."""
+        middle = np.array(self.each.mean(turning=False))
+        size = float(np.sqrt((slopes * slopes).sum())) or 1.0
+        ends = [
+            middle + float(np.sqrt((own * own).sum())) / size * (self.each.furthest(own) - middle)
+            for own in slopes.reshape(len(self.names), -1)
+        ]
+        return np.concatenate(ends)
+
+
+@dataclass(frozen=True)
+class EachJudgedZone(EachZone):
+    """The same of a process, which the zone judges only."""
+
+    each: Process
+
+    def with_law(self, law: Distribution) -> Self:
+        """See Lawful: all of them."""
+        return replace(self, each=self.each.with_law(law))
+
+    def beyond(self, *components: Array) -> NDArray[np.bool_]:
+        """See JudgedDraw: where any bore lies outside its zone."""
+        outside = [~self.each.zone.inside(np.stack(own, axis=-1)) for own in parts_of(components, 2)]
+        return np.asarray(np.any(outside, axis=0))
+
+
+KINDS: Final = (ToothThicknessSpec, EccentricitySpec, ToothRunOutSpec, ClockingSpec, PlanetPinSpec, BorePositionSpec)
+"""Tolerances of planetary sets; those of gears are shared with trains."""
+
+
+def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
+    """Effect of a tolerance on the set.
+
+    Raises:
+        SceneError: it acts on nothing of a set, or of this one.
+    """
+    if not isinstance(spec, KINDS):
+        words = ", ".join(str(kind_of(kind)) for kind in KINDS)
+        sentence = f"expected of planetary sets {words}, got {kind_of(type(spec))}"
+        raise scene.refuse(("tolerances", name, "kind"), sentence)
+    if isinstance(spec, PlanetPinSpec | BorePositionSpec):
+        if spec.of != own.carrier:
+            raise scene.refuse(("tolerances", name, "of"), f"expected {own.carrier!r}, got {spec.of!r}")
+        effects = {"radial": "pin outwards", "tangential": "pin round"}
+        return Acts("pin" if isinstance(spec, BorePositionSpec) else effects.get(spec.direction, "pin"))
+    known = [mesh.central.name for mesh in own.meshes] + [gear.name for gear in own.gears]
+    if spec.of not in known:
+        raise scene.refuse(("tolerances", name, "of"), f"expected a gear of {own.name!r}, got {spec.of!r}")
+    if isinstance(spec, ToothThicknessSpec):
+        part = scene.parts[spec.of]
+        assert isinstance(part, GearSpec)
+        counted = 1 / math.cos(part.pressure_angle.internal) if spec.is_normal else 1.0
+        factor = spec.sign_in(ring=isinstance(part, InternalGearSpec)) * counted
+        return Acts("thickness", spec.of, factor, spec.over)
+    return Acts("clocking" if isinstance(spec, ClockingSpec) else "offset", spec.of)
+
+
+def draw_of(scene: Scene, own: PlanetarySet, acts: Acts, spec: Any) -> Draw:
+    """Draw of the components: independent ones for each planet, pin and bore."""
+    planets = numbered("planet", own.planets)
+    if isinstance(spec, BorePositionSpec):  # its axis parallel to the set's
+        draw = drawn_by(spec.law, axis_section(spec.zone.diameter.internal), scene.files)
+        return EachJudgedZone(draw, planets) if isinstance(draw, Process) else EachZone(draw, planets)
+    of_planets = not acts.gear or acts.gear in {gear.name for gear in own.gears}
+    at = getattr(spec, "direction", None)
+    direction = at.at.internal if isinstance(at, At) else None
+    planar = acts.effect in ("offset", "pin")
+    return drawn(law_of(scene, spec), planets if of_planets else (), planar=planar, direction=direction)

@@ -1,0 +1,265 @@
+"""A law by its limits as a drawing writes them: `±0.1 mm`, `40.1 mm +0.12/0`, `{fit: H7, of: 32 mm}`.
+
+What is written becomes one of the kinds of law, by the law that is named beside it or by the default law of the scene;
+it is kept as `drawn` of that law, so that the scene is dumped as it was written.
+"""
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import Annotated, Any, Final, Self
+
+from pydantic import Field, TypeAdapter, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
+
+from tol3d.errors import InputError
+from tol3d.statistics.distributions.base import DistributionSpec
+from tol3d.statistics.distributions.default_law import LimitLaw, StatedLimitLaw, UniformBetween
+from tol3d.statistics.standards import iso_286, iso_1328_2, iso_2768
+from tol3d.strict import Strict, refused
+from tol3d.units import Of, Positive, Quantity, shown
+
+DEFAULT_LAW: Final = "default_law"
+"""The key of a scene that names it."""
+KEYS: Final = ("fit", "general", "iso_1328_2", "iso_17485", "limits")
+"""Keys, one of which states the form of limits, where no kind of law is stated."""
+PLUS_MINUS: Final = ("±", "+-", "+/-")
+MINUS: Final = str.maketrans({"−": "-"})  # as drawings are copied
+NUMBER: Final = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+UNIT: Final = r"[^\s\d.,+±/-][^\s,+±/-]*(?:/[^\s\d,+±/-]+)*"
+NOMINAL: Final = rf"(?:(?P<nominal>{NUMBER})\s*(?P<nominal_unit>{UNIT})?\s*)?"
+SYMMETRIC: Final = re.compile(rf"\s*{NOMINAL}(?:±|\+-|\+/-)\s*(?P<size>{NUMBER})\s*(?P<unit>{UNIT})?\s*")
+TWO: Final = re.compile(
+    rf"\s*{NOMINAL}(?P<one>[+-]{NUMBER}|0)\s*(?P<one_unit>{UNIT})?\s*/\s*(?P<other>[+-]{NUMBER}|0)\s*(?P<unit>{UNIT})?\s*"
+)
+WRITTEN: Final = 'limits such as "±0.1 mm", "40.1 mm +0.12/0" or [-19 um, -30 um]'
+DIN_3967: Final = re.compile(r"(?:a|ab|b|bc|c|cd|d|e|f|g|h)(?:2[1-9]|30)")
+LONGEST: Final = 100  # characters
+
+_default: ContextVar[LimitLaw | None] = ContextVar("default_law", default=None)
+
+
+class FitSpec(Strict):
+    """`{fit: H7, of: 32 mm}`: limits of ISO 286."""
+
+    fit: str = Field(description="tolerance class of ISO 286, such as H7 of a hole or g6 of a shaft")
+    of: Annotated[Quantity, Of("length"), Positive()] = Field(description="nominal size")
+    law: StatedLimitLaw | None = Field(default=None, description="default: by the scene's default_law")
+
+
+class GeneralSpec(Strict):
+    """`{general: m, of: 60 mm}` or `{general: m, leg: 60 mm}`: limits of ISO 2768-1 of a size or an angle."""
+
+    general: str = Field(description="class f, m, c or v of ISO 2768-1")
+    of: Annotated[Quantity, Of("length"), Positive()] | None = Field(default=None, description="nominal size")
+    leg: Annotated[Quantity, Of("length"), Positive()] | None = Field(
+        default=None, description="of an angle, the length of its shorter leg"
+    )
+    law: StatedLimitLaw | None = Field(default=None, description="default: the scene's default_law")
+
+    @model_validator(mode="after")
+    def _refuse_other_than_one(self) -> Self:
+        if (self.of is None) == (self.leg is None):
+            raise refused("", "either `of`, the nominal size, or `leg` of an angle", "both" if self.of else "neither")
+        return self
+
+    @property
+    def limit(self) -> Quantity:
+        """Plus and minus."""
+        if self.leg is not None:
+            return Quantity(iso_2768.angular(self.general, self.leg.internal), "deg")
+        return Quantity(iso_2768.linear(self.general, self.of.internal if self.of else 0.0), "mm")
+
+
+class GradeSpec(Strict):
+    """`{iso_1328_2: F_r 7, module: 2 mm, of: 48 mm}`: from nothing to what a grade of ISO 1328-2:1997 allows."""
+
+    iso_1328_2: str = Field(description="F_r, F_i'' or f_i'' and the grade, such as F_r 7")
+    module: Annotated[Quantity, Of("length"), Positive()] = Field(description="of what has the grade")
+    of: Annotated[Quantity, Of("length"), Positive()] = Field(description="reference diameter")
+    law: StatedLimitLaw | None = Field(default=None, description="default: the scene's default_law")
+
+
+class LimitsSpec(Strict):
+    """`{limits: ±0.1 mm, law: {kind: uniform}}`: limits with a law of their own."""
+
+    limits: str | list[str] = Field(description=WRITTEN.replace('"', ""))
+    law: StatedLimitLaw | None = Field(default=None, description="default: by the scene's default_law")
+
+
+DRAWN: Final[TypeAdapter[Any]] = TypeAdapter(
+    FitSpec | GeneralSpec | GradeSpec | LimitsSpec | Annotated[str, Field(examples=["±0.1 mm"])] | list[str]
+)
+"""For the JSON Schema of what may be written."""
+Stated = FitSpec | GeneralSpec | GradeSpec | LimitsSpec
+_SPECS: Final[dict[str, type[Stated]]] = {
+    "fit": FitSpec,
+    "general": GeneralSpec,
+    "iso_1328_2": GradeSpec,
+    "limits": LimitsSpec,
+}
+_LAW: Final[TypeAdapter[Any]] = TypeAdapter(StatedLimitLaw)
+
+
+@contextmanager
+def default_law(given: Any) -> Iterator[None]:
+    """Use this law for limits without one of their own: a scene's statement of it, or a LimitLaw."""
+    token = _default.set(_read(given))
+    try:
+        yield
+    finally:
+        _default.reset(token)
+
+
+def _read(given: Any) -> LimitLaw | None:
+    if given is None or isinstance(given, LimitLaw):
+        return given
+    try:
+        law: LimitLaw = _LAW.validate_python(given)
+    except ValidationError:  # which the scene's own field reports
+        return UniformBetween(kind="uniform")
+    return law
+
+
+def is_drawn(value: Any) -> bool:
+    """True if a value is limits as a drawing writes them, right or wrong."""
+    if isinstance(value, str):
+        return any(sign in value for sign in PLUS_MINUS) or "/" in value or bool(DIN_3967.fullmatch(value))
+    if isinstance(value, dict):
+        return "kind" not in value and any(key in value for key in KEYS)
+    return isinstance(value, list | tuple)
+
+
+def drawn_law(value: Any) -> DistributionSpec:
+    """The law that limits on a drawing stand for.
+
+    Raises:
+        PydanticCustomError, ValidationError: they make no sense, or no law is named; for pydantic to pass on.
+    """
+    law = _default.get()
+    if isinstance(value, dict):
+        key = next(key for key in KEYS if key in value)
+        if key not in _SPECS:
+            words = "limits, as in 0/+30 um, for the formulae of ISO 17485 (f_pt, F_p and F_r by the"
+            raise refused(
+                key, f"{words} tolerance diameter and the mean normal module) are not in tol3d", shown(value[key])
+            )
+        stated = _SPECS[key].model_validate(value)
+        law = stated.law or law
+        lower, upper = _limits(stated)
+    else:
+        lower, upper = _written(value, "")
+    if law is None:
+        words = f'the key "{DEFAULT_LAW}" of the scene, such as "{DEFAULT_LAW}: {{kind: normal, sigmas: 3}}", by which '
+        raise refused("", f"{words}limits without a law are read", "none; or write the law out, with kind:")
+    return law.between(lower, upper).as_drawn(_as_text(value))
+
+
+def limits_written(text: str) -> tuple[Quantity, Quantity] | None:
+    """Lower and upper limit of text such as `±10 um`, `+0.02/0 mm` or `[-30 um, -19 um]`; None of any other text.
+
+    Raises:
+        InputError: a nominal size stands before them, a unit lacks, or they are alike.
+    """
+    if text.startswith("[") and text.endswith("]"):
+        value: Any = [own.strip() for own in text[1:-1].split(",")]
+    elif SYMMETRIC.fullmatch(text.translate(MINUS)) or TWO.fullmatch(text.translate(MINUS)):
+        value = text
+    else:
+        return None
+    if (nominal := nominal_size(value)) is not None:
+        raise InputError(f"expected limits alone, got {text!r} with a nominal size; leave {nominal} out")
+    try:
+        return _written(value, "")
+    except PydanticCustomError as error:
+        raise InputError(str(error)) from None
+
+
+def nominal_size(written: Any) -> Quantity | None:
+    """The number in front of limits, such as 40.1 mm of 40.1 mm +0.12/0; None where there is none."""
+    text = written["limits"] if isinstance(written, dict) and "limits" in written else written
+    match = isinstance(text, str) and (SYMMETRIC.fullmatch(own := text.translate(MINUS)) or TWO.fullmatch(own))
+    if not match or match["nominal"] is None:
+        return None
+    return Quantity.parse(
+        f"{match['nominal']} {match['nominal_unit'] or match['unit'] or match.groupdict().get('one_unit')}"
+    )
+
+
+def _as_text(value: Any) -> Any:
+    """Value as YAML writes it; from Python it may hold quantities and a LimitLaw."""
+    if isinstance(value, dict):
+        return {key: _as_text(own) for key, own in value.items()}
+    if isinstance(value, list | tuple):
+        return [_as_text(own) for own in value]
+    if isinstance(value, LimitLaw):
+        return value.model_dump(exclude_unset=True)
+    return str(value) if isinstance(value, Quantity) else value
+
+
+def _limits(stated: Stated) -> tuple[Quantity, Quantity]:
+    if isinstance(stated, LimitsSpec):
+        return _written(stated.limits, "limits")
+    field = next(key for key, own in _SPECS.items() if isinstance(stated, own))
+    try:
+        if isinstance(stated, FitSpec):
+            lower, upper = iso_286.limits(stated.fit, stated.of.internal)
+            return Quantity(float(lower), "um"), Quantity(float(upper), "um")
+        if isinstance(stated, GradeSpec):
+            word, _, grade = stated.iso_1328_2.strip().replace("″", "''").replace('"', "''").rpartition(" ")
+            if not grade.isdecimal():
+                raise InputError(f"expected a deviation and its grade, such as F_r 7, got {stated.iso_1328_2!r}")
+            largest = iso_1328_2.tolerance(word.strip(), int(grade), stated.module.internal, stated.of.internal)
+            return Quantity(0.0, "um"), Quantity(largest, "um")
+        most = stated.limit
+        return Quantity(-most.number, most.unit), most
+    except InputError as error:
+        expected, _, got = str(error).removeprefix("expected ").partition(", got ")
+        raise refused(field, expected, got) from None
+
+
+def _written(value: Any, field: str) -> tuple[Quantity, Quantity]:
+    """Lower and upper limit of text or of a list of two."""
+    pair = _of_list(value, field) if isinstance(value, list | tuple) else _of_text(value, field)
+    dimensions = {own.dimension for own in pair}
+    if len(dimensions) > 1:
+        raise refused(field, "limits of one dimension", " and ".join(str(own) for own in pair))
+    lower, upper = sorted(pair, key=lambda own: own.internal)
+    if lower.internal == upper.internal:
+        raise refused(field, "two different limits (for no spread at all write kind: constant)", shown(value))
+    return lower, upper
+
+
+def _of_list(value: Any, field: str) -> tuple[Quantity, Quantity]:
+    if len(value) != 2:
+        raise refused(field, "a lower and an upper limit, such as [-30 um, -19 um]", f"{len(value)} values")
+    return _quantity(value[0], field), _quantity(value[1], field)
+
+
+def _of_text(value: str, field: str) -> tuple[Quantity, Quantity]:
+    if DIN_3967.fullmatch(value):
+        raise refused(field, "both limits, as in -42/-70 um, for the tables of DIN 3967 are not in tol3d", value)
+    text = value.translate(MINUS) if len(value) <= LONGEST else ""
+    if match := SYMMETRIC.fullmatch(text):
+        unit = match["unit"] or match["nominal_unit"]
+        size = _with_unit(match["size"], unit, value, field)
+        return Quantity(-size.number, size.unit), size
+    if match := TWO.fullmatch(text):
+        unit = match["unit"] or match["one_unit"] or match["nominal_unit"]
+        one = _with_unit(match["one"], match["one_unit"] or unit, value, field)
+        return one, _with_unit(match["other"], unit, value, field)
+    raise refused(field, WRITTEN, shown(value))
+
+
+def _with_unit(number: str, unit: str | None, value: str, field: str) -> Quantity:
+    if unit is None:
+        raise refused(field, "a unit in it, such as ±0.1 mm", shown(value))
+    return _quantity(f"{number} {unit}", field)
+
+
+def _quantity(text: Any, field: str) -> Quantity:
+    try:
+        return Quantity.parse(text)
+    except ValueError as error:
+        raise refused(field, WRITTEN, str(error).removeprefix("got ")) from None

@@ -1,0 +1,46 @@
+"""The seam between a study and the studied system."""
+
+from typing import TYPE_CHECKING
+
+from tol3d.import_path import lazy_names
+
+if TYPE_CHECKING:
+    from tol3d.study.system.draw import Each, Planar, Scalar
+    from tol3d.study.system.mechanism import Mechanism, starter_lines, starter_named, starters_of
+    from tol3d.study.system.plain import LengthSpec, PlainSystem, contributors_of, measures_of
+    from tol3d.study.system.system import System
+    from tol3d.study.system.trials import Trials
+
+_HOMES = {
+    "Each": "tol3d.study.system.draw",
+    "LengthSpec": "tol3d.study.system.plain",
+    "Mechanism": "tol3d.study.system.mechanism",
+    "PlainSystem": "tol3d.study.system.plain",
+    "Planar": "tol3d.study.system.draw",
+    "Scalar": "tol3d.study.system.draw",
+    "System": "tol3d.study.system.system",
+    "Trials": "tol3d.study.system.trials",
+    "contributors_of": "tol3d.study.system.plain",
+    "measures_of": "tol3d.study.system.plain",
+    "starter_lines": "tol3d.study.system.mechanism",
+    "starter_named": "tol3d.study.system.mechanism",
+    "starters_of": "tol3d.study.system.mechanism",
+}
+
+__all__ = [
+    "Each",
+    "LengthSpec",
+    "Mechanism",
+    "PlainSystem",
+    "Planar",
+    "Scalar",
+    "System",
+    "Trials",
+    "contributors_of",
+    "measures_of",
+    "starter_lines",
+    "starter_named",
+    "starters_of",
+]
+
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -1,0 +1,79 @@
+"""Contributors that are correlated: a Gaussian copula, a matrix of correlations in the standard normals of their laws.
+
+Each contributor keeps its own law: a uniform u of its stream is taken to Φ⁻¹(u), the normals of a block are mixed by
+the Cholesky factor of its matrix, and the result is taken back by Φ. The first of a block is drawn as without it.
+
+Source: Nataf 1962; Nelsen, An Introduction to Copulas (2006), 2.8.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from tol3d.numerics.arrays import Array
+from tol3d.study.system.normals import LEAST, MOST
+
+
+@dataclass(frozen=True)
+class Block:
+    """Contributors that are correlated with each other, and with no others.
+
+    Args:
+        names: of the contributors; each is drawn by one uniform.
+        matrix: correlations of their normals, positive definite.
+    """
+
+    names: tuple[str, ...]
+    matrix: tuple[tuple[float, ...], ...]
+
+    @cached_property
+    def correlation(self) -> Array:
+        """The matrix (names, names)."""
+        return np.array(self.matrix)
+
+    @cached_property
+    def factor(self) -> Array:
+        """Its Cholesky factor, lower triangular: correlated normals are it times independent ones."""
+        return np.asarray(np.linalg.cholesky(self.correlation))
+
+    def mixed(self, normals: Sequence[Array]) -> list[Array]:
+        """Correlated normals (n,) of each name, of independent ones, row by row: no BLAS, whose bits follow shapes."""
+        return [
+            sum((self.factor[i, k] * normals[k] for k in range(1, i + 1)), self.factor[i, 0] * normals[0])
+            for i in range(len(self.names))
+        ]
+
+    def uniforms(self, uniforms: Sequence[Array]) -> list[Array]:
+        """Correlated uniforms (n,) of each name, of independent ones; the first is as it was."""
+        normals = self.mixed([ndtri(np.clip(own, LEAST, MOST)) for own in uniforms])
+        return [uniforms[0], *(np.clip(ndtr(own), LEAST, MOST) for own in normals[1:])]
+
+
+@dataclass(frozen=True)
+class Copula:
+    """Blocks of correlated contributors, none in two of them.
+
+    Args:
+        blocks: of the contributors; none if all are independent.
+    """
+
+    blocks: tuple[Block, ...] = ()
+
+    def uniforms(self, independent: Mapping[str, Array]) -> Mapping[str, Array]:
+        """Correlated uniforms by name, of the independent ones of all that are in blocks."""
+        found: dict[str, Array] = {}
+        for own in self.blocks:
+            found |= dict(zip(own.names, own.uniforms([independent[name] for name in own.names]), strict=True))
+        return found
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """All contributors that are correlated."""
+        return frozenset(name for own in self.blocks for name in own.names)
+
+
+INDEPENDENT = Copula()
+"""No contributor is correlated with any other."""
