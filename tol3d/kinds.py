@@ -136,14 +136,14 @@ def _grammar_of(shipped: Iterable[str]) -> Grammar:
 @cache
 def _declared(path: str) -> frozenset[str]:
     """Words that a shipped mechanism's grammar declares, by its sources: some may be of other things than entries."""
-    folder = Path(__file__).parent / _room(path) / "grammar"
+    folder = Path(__file__).parent.joinpath(*path.split(".")[1:-1], "grammar")
     files = (file for own in ("", *SECTIONS) for file in (folder / own).glob("*.py"))
     return frozenset(word for file in files for word in DECLARED.findall(file.read_text("utf-8")))
 
 
 def _room(path: str) -> str:
     """The folder of a shipped mechanism, which is its name too."""
-    return path.split(".")[1]
+    return path.split(".")[-2]
 
 
 def _needed_by(summary: Mapping[str, Any]) -> Iterator[str]:

@@ -37,7 +37,7 @@ def state_of(path: Path) -> list[bytes]:
 
 def forget() -> None:
     """Leave nothing of what scenes before have made in this process."""
-    rooms = tuple(f"tol3d.{room}." for room in ("assembly", "linkage", "solids", "step"))
+    rooms = tuple(f"tol3d.{room}." for room in ("assembly", "cad"))
     for own in [own for name in [*sys.modules] if name.startswith(rooms) for own in vars(sys.modules[name]).values()]:
         if isinstance(own, WeakKeyDictionary):
             own.clear()

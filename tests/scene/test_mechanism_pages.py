@@ -44,7 +44,7 @@ def test_what_a_page_quotes_stands_in_its_scenes(page: MechanismPage) -> None:
 @pytest.mark.parametrize("page", QUOTING)
 def test_the_scenes_of_a_page_use_every_field_of_every_kind(page: MechanismPage) -> None:
     kinds = [spec for section in SECTIONS for spec in page.mechanism.specs(section)]
-    own = f"tol3d.{page.mechanism.name}"
+    own = page.mechanism.starters.partition(":")[0]
     known = {field for spec in kinds for field in fields_within(spec) if field[0].__module__.startswith(own)}
     said = {field for name in page.scenes for field in fields_said(load_scene(SCENES / f"{name}.yaml"))}
     beside = {"expansion", "description"}  # any part, tolerance or measure may have

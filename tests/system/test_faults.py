@@ -96,7 +96,7 @@ FAULTS = {
     "an attribute is missing": (
         MAKING,
         "class Half: name, measures, contributors = 'half', (), ()\n    return Half()",
-        "expected a tol3d.study.system.system.System, got Half without statuses, breakdowns, warnings, problems, describe",
+        "expected a tol3d.study.system.system.System, got Half without statuses, breakdowns, warnings, problems",
     ),
     "a measure is none": (
         "measures_of(scene))",

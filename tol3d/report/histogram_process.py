@@ -33,8 +33,10 @@ from tol3d.study.runs.summary.text import typed
 
 FEWEST_EACH: Final = 5  # pictures of a process; for fewer a further one does not pay
 
-SUMMARIES = tuple(
-    f"tol3d.{path.parent.name}.{path.stem}" for path in sorted(Path(__file__).parents[1].glob("*/summary_types.py"))
+PACKAGE: Final = Path(__file__).parents[1]
+SUMMARIES: Final = tuple(
+    ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)
+    for path in sorted(PACKAGE.rglob("summary_types.py"))
 )
 """Modules of the summaries of this package's mechanisms."""
 

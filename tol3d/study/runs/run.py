@@ -176,7 +176,7 @@ class Run:
         return frame_of(self.columns(*names), self.found.measures, curves)
 
     def worst(self, measure: str | None = None) -> int:
-        """Trial that is nearest to a limit of a measure, or furthest beyond it; see `tol3d.study.runs.worst.worst_trial`.
+        """Trial that is nearest to a limit of a measure, or furthest beyond it; see `runs/worst.py`.
 
         Raises:
             RunError: no such measure, or the run kept no trials.

@@ -129,7 +129,7 @@ class Theory(Protocol):
     """Effects on the measures of a system, and their properties that are known without trials."""
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
-        """The contributors that act on a measure by theory; study/effects/acting_contributors.py tries those that it leaves out."""
+        """The contributors that act on a measure by theory; `acting_contributors` tries the others."""
         ...
 
     def regressor_key(self, measure: Measure) -> Hashable:

@@ -19,7 +19,7 @@ SUMMARY_FILE = "summary.json"
 LONGEST_MESSAGE = 400  # characters
 MOST_NAMED = 3  # unknown kinds
 OWN_PACKAGE = "tol3d"
-WHERE = "its keys are written down in tol3d/study/runs/summary/ and by mechanisms, one line each in the class of their place"
+WHERE = "its keys are written down in tol3d/study/runs/summary/ and by mechanisms, a line each in its class"
 
 
 class SchemaWarning(UserWarning):

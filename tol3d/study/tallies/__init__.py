@@ -1,0 +1,1 @@
+"""Statistics of trials, folded block by block: samples, curves, joint results, regressions, Ppk."""
