@@ -2,7 +2,10 @@
 
     tol3d.analyses.what_if("spur_pair", factor={"centre distance": 0.5}).frame()
 
-The functions have the words of their commands; names are loaded when they are first used.
+The functions have the words of their commands; names are loaded when they are first used. A module that computes an
+answer stands beside those that show it (`shown_…`) and that a run keeps (`…_section`). No mechanism, solid or command
+line is known here: a `Response` gives values of measures for rows of deviations. Read `response.py` first, then
+`answers.py`.
 """
 
 from importlib import import_module

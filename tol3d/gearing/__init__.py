@@ -1,6 +1,11 @@
-"""Gears in mesh and their trains: builds, contact, measures, and the stack-up.
+"""Gears in mesh: pairs and trains, planetary sets, RV reducers, and gears in housings.
 
-Public names are loaded when they are first used.
+Pairs and trains, from low to high: `shafts`, `effects`, `links`, `draws`; `grammar` (words of scenes); `model` (what
+they mean); `builds` (deviations to poses); `engines` (gaps of flanks); `meshing` (seated meshes); `stack_up` (the
+analytic method; sees no build); `play` (backlashes together); `methods`, `slopes`, `system`, `shown`, `presenting`.
+On top of them `reducers`, what `planetary` and `cycloid` share, and `machine`, which joins gears with parts of
+assemblies. Tooth geometry is not here but in `tol3d.gears`. Public names are loaded when they are first used. Read
+`model/model.py` first, then `methods/geometric.py`.
 """
 
 from typing import TYPE_CHECKING

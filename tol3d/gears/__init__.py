@@ -1,4 +1,9 @@
-"""Exact tooth geometry: closed forms only, no mesh, no CAD. Lengths in mm, angles in rad."""
+"""Exact tooth geometry: closed forms only, no mesh, no CAD. Lengths in mm, angles in rad.
+
+One gear: `spur_gear`, `internal_gear`, `bevel_gear`; two of them: `spur_pair`, `internal_pair`, `bevel_pair`. Measures
+of teeth (`tooth_measures`) and classes of flanks (`iso1328`) beside them. No scene, draw or trial is known here. Read
+`pair.py` first, what every pair offers.
+"""
 
 from tol3d.gears.bevel_gear import BevelGear, pitch_angles
 from tol3d.gears.bevel_pair import BevelPair

@@ -1,6 +1,9 @@
 """Scene file of the user, read strictly, with the place of everything in it.
 
-Names are loaded when they are first used: summaries read the classes of published figures alone.
+`text.py` reads YAML, `load.py` makes a checked `Scene` of it, `schema.py` has its sections, `grammar.py` the kinds that
+mechanisms add, `bases.py` what every part, tolerance, move and measure has, `problems.py` the sentences of errors.
+`splice.py` writes a value back and leaves the rest as it was. No mechanism is known here. Names are loaded when they
+are first used: summaries read the classes of published figures alone. Read `schema.py` first.
 """
 
 from typing import TYPE_CHECKING

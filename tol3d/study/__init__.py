@@ -1,4 +1,16 @@
-"""Study of a system: its settings, draws, tallies, stopping and findings."""
+"""Study of a system: from seed to summary.json.
+
+    system      the seam: what a study asks of a system, and all that it knows of one
+    execution   workers, blocks and their order
+    runs        a run on disk, and the contents of its summary.json
+    trials      settings, draws, and both methods' values as columns
+    effects     who acts, slopes, ends, regions, worst cases
+    tallies     statistics, folded block by block
+    results     tasks of workers, attribution, agreement of the methods, the summary
+
+Lower ones know nothing of upper ones, and none knows a gear, a part or a solid. Read `system/system.py` first, then
+`results/task.py`.
+"""
 
 from typing import TYPE_CHECKING
 
