@@ -162,7 +162,7 @@ def _parsed(text: str) -> Quantity:
     if len(text) <= LONGEST_TEXT and ANGLE.fullmatch(plain):
         parts = [Quantity(float(number), ANGLE_UNITS[sign]) for number, sign in ANGLE_PARTS.findall(plain)]
         smallest = FACTORS["angle"][parts[-1].unit]
-        total = sum(own.number * round(FACTORS["angle"][own.unit] / smallest) for own in parts)
+        total = sum(part.number * round(FACTORS["angle"][part.unit] / smallest) for part in parts)
         return Quantity(-total if plain.lstrip().startswith("-") else total, parts[-1].unit)
     if match is None:
         comma = DECIMAL_COMMA.fullmatch(text[:LONGEST_TEXT])

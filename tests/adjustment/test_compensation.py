@@ -24,7 +24,7 @@ from tol3d.errors import InputError
 from tol3d.gearing import CLOSED_FORM, train_play
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.grammar.tolerances.gears import ShimSpec
-from tol3d.gears.toothed_gear import opposite
+from tol3d.gears.flank import opposite
 from tol3d.report.number import tip_mm
 from tol3d.units import ARCMIN
 

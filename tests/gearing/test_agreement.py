@@ -34,7 +34,7 @@ from tol3d.gearing.model import (
 from tol3d.gearing.model.model import Housing
 from tol3d.gearing.stack_up import analytic_backlash, closed_form
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.statistics.distributions import Uniform
 
 ALPHA = math.radians(20.0)

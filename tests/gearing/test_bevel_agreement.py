@@ -27,7 +27,7 @@ from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.meshing.seats import measure_backlash
 from tol3d.gearing.model import Backlash, GearPart, Mesh, Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, pitch_angles
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.simulate import load
 from tol3d.study.system.trials import Trials
 

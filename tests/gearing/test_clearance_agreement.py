@@ -19,7 +19,7 @@ from vectors import vector
 
 from tol3d import load_scene
 from tol3d.gearing.model import Model, model_from_scene
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.simulate import Overrides, run_scene
 
 SPUR_PAIR = (SCENES / "spur_pair.yaml").read_text("utf-8")

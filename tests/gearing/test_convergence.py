@@ -20,7 +20,7 @@ from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.meshing.seats import geometric_values, measure_backlash, read_backlash, seated
 from tol3d.gearing.model import Backlash, Measure, Model, Positions, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.study.system.positions import Take
 from tol3d.study.system.taken import taken
 from tol3d.study.system.trials import Trials

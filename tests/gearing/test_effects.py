@@ -27,7 +27,7 @@ from tol3d.gearing.effects import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.engines.exact.deviation_sums import compiled_displacements
+from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading, Scalar, model_from_scene
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gearing.stack_up.terms import contribution

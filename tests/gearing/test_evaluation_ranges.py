@@ -15,7 +15,7 @@ from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gears import SpurGear
-from tol3d.gears.toothed_gear import LEFT, RIGHT, Flank
+from tol3d.gears.flank import LEFT, RIGHT, Flank
 
 Array = NDArray[np.float64]
 

@@ -33,7 +33,7 @@ from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.meshing.seats import measure_backlash, read_backlash
 from tol3d.gearing.model import Backlash, Reading
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 
 ALPHA = math.radians(20.0)
 WHOLE_FACE = Reading()

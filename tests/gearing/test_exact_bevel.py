@@ -23,7 +23,7 @@ from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.meshing.seats import measure_backlash, read_backlash
 from tol3d.gearing.model import Backlash, Reading
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, driver_teeth_at_one_tooth, pitch_angles
-from tol3d.gears.toothed_gear import Flank, opposite
+from tol3d.gears.flank import Flank, opposite
 
 Teeth = Literal["all", "driver", "driven"]
 

@@ -13,7 +13,7 @@ from tol3d.gearing.engines import OK, OUT_OF_RANGE
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Reading
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, InternalPair, SpurGear
-from tol3d.gears.toothed_gear import opposite
+from tol3d.gears.flank import opposite
 
 ALPHA = math.radians(20)
 BOUND = 5e-6  # mm; 0.005 um. A zoom keeps 2.5 um of the face, times 1 mrad of tilt 0.003 um

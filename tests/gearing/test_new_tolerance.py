@@ -16,11 +16,12 @@ import pytest
 
 from tol3d import Overrides, Run, Scene, load_scene, run_scene
 from tol3d.gearing.builds.build import build
-from tol3d.gearing.builds.displacements import FLANK_OFFSET, Displacement, displacements
+from tol3d.gearing.builds.displacements import Displacement, displacements
 from tol3d.gearing.builds.rates import build_rates
+from tol3d.gearing.builds.slots import FLANK_OFFSET
 from tol3d.gearing.effects import Effect
 from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.engines.exact.deviation_sums import compiled_displacements
+from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading, model_from_scene

@@ -22,7 +22,7 @@ from tol3d.gearing.engines import OK
 from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 
 SPUR_PAIR = (SCENES / "spur_pair.yaml").read_text("utf-8")
 

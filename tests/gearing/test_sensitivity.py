@@ -32,7 +32,7 @@ from tol3d.gearing.model import (
 from tol3d.gearing.slopes.coefficients import mean_slopes
 from tol3d.gearing.slopes.sensitivity import peak_weights, sensitivities, taken_rates
 from tol3d.gears import LEFT, RIGHT
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.statistics.distributions import Constant
 from tol3d.study.system.positions import Take
 from tol3d.study.system.taken import taken

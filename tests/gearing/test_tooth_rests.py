@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.tooth_contact import beside, edge_gap
 from tol3d.gearing.model import Reading
-from tol3d.gears.toothed_gear import LEFT, RIGHT
+from tol3d.gears.flank import LEFT, RIGHT
 
 Array = NDArray[np.float64]
 

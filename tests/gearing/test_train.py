@@ -25,7 +25,7 @@ from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.gaps import exact_engine, fcl_engine
 from tol3d.gearing.model import LostMotion, Model, Reading, model_from_scene
 from tol3d.gearing.system import strips_of
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.study.system.trials import Trials
 
 TRIALS = 200

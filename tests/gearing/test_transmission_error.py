@@ -30,7 +30,7 @@ from tol3d.gearing.model import Backlash, Kind, Measure, Model, TransmissionErro
 from tol3d.gearing.model.mesh_measures import default_reading
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.study.system.positions import Positions
 from tol3d.study.system.trials import Trials, mean_build, stated
 

@@ -33,6 +33,7 @@ from tol3d.gears import (
     pitch_angles,
     spherical_involute,
 )
+from tol3d.gears.flank import Flank
 from tol3d.gears.spherical_involute import (
     flank_directions,
     flank_normals,
@@ -40,7 +41,6 @@ from tol3d.gears.spherical_involute import (
     involute_azimuth,
     polar_angle,
 )
-from tol3d.gears.toothed_gear import Flank
 
 DEG = math.pi / 180
 ALPHA = 20 * DEG

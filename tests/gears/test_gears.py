@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, Displaced, SpurGear, SpurPair, inverse_involute, involute
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 
 ALPHA = math.radians(20.0)
 EXACT = 1e-9  # mm; what the closed forms must keep of each other over all sizes here

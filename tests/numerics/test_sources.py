@@ -13,7 +13,7 @@ import pytest
 from places import ROOT, SCENES
 
 from tol3d.gearing.engines.exact import kernels
-from tol3d.gearing.engines.exact.deviation_sums import write_builds
+from tol3d.gearing.engines.exact.sums import write_builds
 from tol3d.numerics import compiled, sources
 from tol3d.numerics.compiled import Kernel
 from tol3d.numerics.sources import sources_of
@@ -116,7 +116,7 @@ def test_a_change_of_any_source_of_a_kernel_is_another_kernel(kernel: Kernel, mo
         names.add(name_of(kernel))
     assert len(names) == len(mine) + 1
     if kernel._tuples:
-        assert "tol3d.gearing.engines.gaps" in mine  # whose codes are frozen into it
+        assert "tol3d.gearing.engines.status" in mine  # whose codes are frozen into it
 
 
 @each_kernel

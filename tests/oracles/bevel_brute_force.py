@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from oracles.brute_force import zoomed_minimum
 from oracles.poses import world_from_gears
-from tol3d.gears.toothed_gear import Flank, opposite
+from tol3d.gears.flank import Flank, opposite
 
 TEETH_EACH_SIDE = 2  # teeth beyond the one nearest to the mesh: 5 pitches, a path of contact has 2
 ROLL_POINTS, ROLL_ZOOMS = 11, 7  # a zoom keeps two of ten cells: 5^6 times finer than 20 mm/10 is 0.13 um

@@ -11,7 +11,7 @@ import numpy as np
 
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import world_from_gears
-from tol3d.gears.toothed_gear import Flank, opposite
+from tol3d.gears.flank import Flank, opposite
 
 TEETH_EACH_SIDE = 2  # teeth beyond the one nearest to the line of centres: 5 pitches, a path of contact has 2
 ROLL_POINTS, ROLL_ZOOMS = 13, 8  # a zoom keeps two of twelve cells: 6^7 times finer than 20 mm/12 is 0.006 um

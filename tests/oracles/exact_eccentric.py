@@ -8,7 +8,7 @@ cos alpha_w' = (r_b1 + r_b2)/|C2 - C1|. Source: ISO 21771-1:2024, 5.6, at the ce
 import numpy as np
 
 from oracles.involute_gear import InvoluteGear
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 
 TURN_ROUNDS = 6  # the wheel's turn moves its centre by e2 j/r, 1e-5 of it; each round gains that factor
 AZIMUTH_ROUNDS = 6  # of e/a each, 1e-2 for the smallest gears: 1e-12 of 0.1 mm

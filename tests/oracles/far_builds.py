@@ -24,7 +24,7 @@ from tol3d.gearing.model import (
 )
 from tol3d.gearing.model.model import Housing
 from tol3d.gears import BevelGear, BevelPair, SpurGear, SpurPair, pitch_angles
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.statistics.distributions import Distribution, Uniform
 from tol3d.study.system.trials import Trials
 

@@ -14,7 +14,7 @@ import numpy as np
 from oracles.brute_force import FACE_POINTS, FACE_ZOOMS, ROLL_POINTS, ROLL_ZOOMS, zoomed_minimum
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import world_from_gears
-from tol3d.gears.toothed_gear import Flank, opposite
+from tol3d.gears.flank import Flank, opposite
 
 TEETH_EACH_SIDE = 3  # 7 pitches: a path of contact has 2.5
 CONTACT_XTOL = 1e-9  # mm

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 
 BELOW_BASE = 0.0  # mm of string: the flank is followed down to its base circle, where no mate ever reaches
 

@@ -11,7 +11,7 @@ from oracles.involute_gear import InvoluteGear
 from tol3d.gearing.builds.build import Build
 from tol3d.gearing.model import GearPart, Mesh, Model
 from tol3d.gears import BevelGear, BevelPair, InternalPair, SpurGear, SpurPair
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from numba import njit
 from oracles.bevel_brute_force import BevelMesh, BevelNumbers
 from oracles.brute_force import Mesh
 from oracles.involute_gear import InvoluteGear
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 
 TEETH_EACH_SIDE = 2  # beyond the one nearest to the mesh: 5 pitches, a path of contact has 2
 PROFILE_POINTS, PROFILE_ZOOMS = 13, 9  # two of twelve cells are kept: 6^8 times finer than 20 mm/12, 1e-6 mm

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tol3d.gears.flank import Flank
 from tol3d.gears.spherical_involute import Angles, flank_normals, involute_azimuth
-from tol3d.gears.toothed_gear import Flank
 from tol3d.numerics.arrays import Array
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.gears.toothed_gear import Flank, opposite
+from tol3d.gears.flank import Flank, opposite
 
 Seat = Callable[[np.ndarray, Flank], np.ndarray]
 """Driver's angles [rad] and its flank (1 right, -1 left) to the driven gear's at rest, all in the mesh's frame."""

@@ -26,7 +26,7 @@ from vectors import vector
 
 from tol3d import Run, load_scene
 from tol3d.gearing.model import model_from_scene
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 
 ELSEWHERE = re.compile(
     "bevel|robot|train|two_sided|tooth_deviations|measured_teeth|internal_pair"

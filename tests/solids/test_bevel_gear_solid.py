@@ -19,7 +19,7 @@ from scipy.integrate import quad
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, BevelGear, pitch_angles
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.parts.bevel_cones import BACK_RIM, FRONT_RIM, RIM_SHARE
 from tol3d.parts.bevel_flank import FLANK_ERROR, flank_intervals, sample_flank
 from tol3d.parts.bevel_gear import build

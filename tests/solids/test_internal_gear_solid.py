@@ -18,7 +18,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Surface
 
 from tol3d.cad.solids import display_mesh, measuring_strips, strip_mesh
 from tol3d.gears import LEFT, RIGHT, InternalGear
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.parts import internal_gear
 from tol3d.parts.internal_gear import build_tooth
 from tol3d.parts.tooth_edges import flank_intervals, flank_name

@@ -30,7 +30,7 @@ from tol3d.cad.solids import (
 from tol3d.cad.solids.cache import CacheWarning
 from tol3d.errors import RunError
 from tol3d.gears import LEFT, RIGHT, SpurGear
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.numerics.cache_folder import cache_folder
 
 DEG = math.pi / 180

@@ -14,7 +14,7 @@ from of_kind import of_kind
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, SpurGear
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.parts.named_solid import NamedEdge, extruded, to_step
 from tol3d.parts.spur_gear import build
 from tol3d.parts.tooth_edges import FLANK_ERROR, flank_intervals, flank_name

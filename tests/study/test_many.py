@@ -14,7 +14,7 @@ from tol3d import load_scene
 from tol3d.cad.solids import spur_cad
 from tol3d.cad.solids.spur_cad import sample_flanks
 from tol3d.gearing.builds.build import build
-from tol3d.gearing.engines.exact.deviation_sums import compiled_displacements
+from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gearing.system import GearSystem
 from tol3d.gears import SpurGear

@@ -19,9 +19,9 @@ def allocation_charts(name: str, found: Allocation) -> Charts:
 
 def factors_chart(found: Allocation) -> Chart:
     """A bar for the factor of each tolerance; grey: held by more than a bound."""
-    rows, factors = found.tolerances, [own.factor for own in found.tolerances.values()]
-    texts = [f"{own:.3g}" for own in factors]
-    roles: list[Role] = ["soft" if own.held and "bound" not in own.held else "series-0" for own in rows.values()]
+    rows, factors = found.tolerances, [tolerance.factor for tolerance in found.tolerances.values()]
+    texts = [f"{factor:.3g}" for factor in factors]
+    roles: list[Role] = ["soft" if row.held and "bound" not in row.held else "series-0" for row in rows.values()]
     marks = [Mark(1.0, "guide", role="plain")]
     if found.equal_factor is not None:
         marks.append(
@@ -41,9 +41,9 @@ def costs_chart(found: Allocation) -> Chart:
     if found.equal_cost is not None and found.targets:
         wanted = np.array([found.targets[0].wanted])
         series.append(Points(wanted, np.array([found.equal_cost]), "series-1", "equal factors", "square"))
-    for own in found.targets[:1]:
-        series.append(Line(np.array(own.interval), np.array([found.cost] * 2), "series-5"))
-        series.append(Points(np.array([own.ppm]), np.array([found.cost]), "series-5", "confirmed", "diamond"))
+    for target in found.targets[:1]:
+        series.append(Line(np.array(target.interval), np.array([found.cost] * 2), "series-5"))
+        series.append(Points(np.array([target.ppm]), np.array([found.cost]), "series-5", "confirmed", "diamond"))
     drawn = [own for own in series if isinstance(own, Line | Points)]
     x = np.concatenate([own.x for own in drawn])
     least = float(x[x > 0.0].min(initial=1e6))

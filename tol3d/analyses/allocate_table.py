@@ -27,11 +27,12 @@ def allocation_report(name: str, found: Allocation) -> Page:
     blocks += [BLANK, *titled("out of limits [ppm]", _targets(found))]
     blocks += [
         warning(
-            f"{own.measure}: {ppm_text(own.wanted)} ppm were wanted, sampling says {ppm_text(own.ppm)}: near there the "
-            f"share jumps with the tolerances; ask for less (--ppm {ppm_text(own.wanted / 2)}), or freeze some"
+            f"{target.measure}: {ppm_text(target.wanted)} ppm were wanted, sampling says {ppm_text(target.ppm)}: near "
+            f"there the share jumps with the tolerances; ask for less (--ppm {ppm_text(target.wanted / 2)}), or freeze "
+            "some"
         )
-        for own in found.targets
-        if own.interval[0] > own.wanted
+        for target in found.targets
+        if target.interval[0] > target.wanted
     ]
     blocks += [BLANK, *titled("cost over ppm", _trade_off(found)), BLANK, note(WORDS)]
     counted = f"{found.rounds} rounds, {found.draws} draws a limit each, {found.evaluations} builds evaluated"
@@ -50,7 +51,7 @@ def _tolerances(found: Allocation) -> Table:
 
 
 def _targets(found: Allocation) -> Table:
-    return declared_table("", ((f"{own.measure}, {' and '.join(own.sides)}", own) for own in found.targets))
+    return declared_table("", ((f"{target.measure}, {' and '.join(target.sides)}", target) for target in found.targets))
 
 
 def _trade_off(found: Allocation) -> Table:

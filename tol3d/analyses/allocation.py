@@ -83,14 +83,14 @@ def allocation(
         InputError: no target, a measure without such limits, nothing to scale, or a target that no factors reach.
     """
     asked, before = question or Question(), response.evaluations
-    targets = [with_sides(response, own) for own in targets]
+    targets = [with_sides(response, target) for target in targets]
     if not targets:
         raise InputError("expected a measure with limits, got none")
     if response.rough:
         words = "expected contributors with a smooth map from normals, from which slopes of the ppm are known"
         raise InputError(f"{words}, got {', '.join(response.rough)}; ask tol3d what-if of single changes")
     search, held = begun(response, targets, asked)
-    wanted = np.log([1e-6 * own.ppm for own in targets])
+    wanted = np.log([1e-6 * target.ppm for target in targets])
     activity("the tightest tolerances")
     _refuse_out_of_reach(search, draws, seed)
     zero = np.zeros(len(search.low))
@@ -158,7 +158,7 @@ def _sampled(search: Search, x: Array, draws: int, seed: int) -> Array:
     """Fractions out of limits (targets,) by importance sampling about the design points, always from a seed."""
     search.move_to(x)
     each = {key: own.sampled(draws, seed)[0] for key, own in search.points.items()}
-    return np.array([math.fsum(each[key] for key in search.keys(own)) for own in search.targets])
+    return np.array([math.fsum(each[key] for key in search.keys(target)) for target in search.targets])
 
 
 def _looked(search: Search, x: Array, draws: int, seed: int) -> list[_Seen]:
@@ -169,8 +169,8 @@ def _looked(search: Search, x: Array, draws: int, seed: int) -> list[_Seen]:
         alone = other.of(target.measure)
         limits = limits_of(alone.measures[0])
         events = [rare_event(alone, side, limits[side], draws=draws, seed=seed) for side in target.sides]
-        total = math.fsum(own.probability for own in events)
-        ends = [math.hypot(*(own.interval[end] - own.probability for own in events)) for end in (0, 1)]
+        total = math.fsum(event.probability for event in events)
+        ends = [math.hypot(*(event.interval[end] - event.probability for event in events)) for end in (0, 1)]
         found.append(_Seen(total, (max(0.0, total - ends[0]), min(1.0, total + ends[1]))))
     return found
 
@@ -281,7 +281,7 @@ class _Rounds:
 
 def _trade_off(search: Search, shift: Array, x: Array) -> list[CostAt]:
     """The least cost for other shares, all targets' alike, by first order as it was corrected at the target."""
-    wanted = np.log([1e-6 * own.ppm for own in search.targets])
+    wanted = np.log([1e-6 * target.ppm for target in search.targets])
     first = search.targets[0].ppm
     found = [made(CostAt, ppm=first, cost=search.cost(x))]
     for times in CURVE:
@@ -299,7 +299,7 @@ def _trade_off(search: Search, shift: Array, x: Array) -> list[CostAt]:
 
 def _told(search: Search, x: Array, held: Mapping[str, tuple[str, str]]) -> dict[str, Allocated]:
     response, other = search.response, search.scaled(x)
-    by_name = {own.name: own for own in response.contributors}
+    by_name = {contributor.name: contributor for contributor in response.contributors}
     found = {}
     for k, (name, factor) in enumerate(search.factors(x).items()):
         first = search.groups[name][0]

@@ -79,11 +79,11 @@ def groups_of(response: Response) -> Mapping[str, tuple[str, ...]]:
 def _tolerances(response: Response) -> dict[str, Line]:
     """The lines of a scene, those of one tolerance together: that of a pattern, and that of its motion."""
     found: dict[tuple[str, ...], list[Line]] = {}
-    for own in response.simulation.lines:
-        found.setdefault(own.entries or (own.name,), []).append(own)
+    for line in response.simulation.lines:
+        found.setdefault(line.entries or (line.name,), []).append(line)
     return {
         (name := min((own.name for own in lines), key=len)): Line(
-            name, tuple(each for own in lines for each in own.contributors), lines[0].entries
+            name, tuple(contributor for own in lines for contributor in own.contributors), lines[0].entries
         )
         for lines in found.values()
     }

@@ -90,7 +90,7 @@ class Answer(Report, Generic[Found]):
 
     def csv(self) -> str:
         """Numbers as its command writes them by --csv."""
-        return "\n".join(own.csv() for own in self.numbers().values()) if self.whole else super().csv()
+        return "\n".join(number.csv() for number in self.numbers().values()) if self.whole else super().csv()
 
     def frame(self) -> "DataFrame":
         """Its main table as a DataFrame of pandas, with all digits; of several measures their tables, one column more.
@@ -191,11 +191,11 @@ def _of(
 
 
 def _kept(
-    own: Subject, name: str, found: Found, numbers: Callable[[Page], Mapping[str, Table]]
+    subject: Subject, name: str, found: Found, numbers: Callable[[Page], Mapping[str, Table]]
 ) -> tuple[Page, Found, Callable[[], Mapping[str, Table]], Callable[[], Charts], Path | None]:
     """Parts of all answers: page, findings, what makes the tables of the frame and the charts, the run's file."""
-    page = page_of(name, found, own.name, lambda: own.simulation.system.contributors)
-    return page, found, lambda: numbers(page), partial(charts_of, name, found, own.name), own.keep(name, found)
+    page = page_of(name, found, subject.name, lambda: subject.simulation.system.contributors)
+    return page, found, lambda: numbers(page), partial(charts_of, name, found, subject.name), subject.keep(name, found)
 
 
 def _first_table(page: Page) -> Mapping[str, Table]:

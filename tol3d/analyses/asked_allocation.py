@@ -24,9 +24,9 @@ def targets_of(response: Response, measures: Sequence[str], ppm: float | None, p
         raise InputError("expected --ppm or --ppk, got both")
     if ppk is not None and not 0.0 < ppk < MOST_PPK:
         raise InputError(f"--ppk: expected a number above 0 and below {MOST_PPK:g}, got {ppk:g}")
-    named = [_measure(own) for own in measures]
+    named = [_measure(measure) for measure in measures]
     if not named:
-        named = [(own.name, ()) for own in response.measures if limits_of(own)]
+        named = [(measure.name, ()) for measure in response.measures if limits_of(measure)]
     if not named:
         raise InputError("expected a measure with limits, got none; state lower_limit or upper_limit in the scene")
     found = []

@@ -213,7 +213,7 @@ def what_if(
             before=both["before"],
             after=both["after"],
         )
-    by_name = {own.name: own for own in asked.contributors}
+    by_name = {contributor.name: contributor for contributor in asked.contributors}
     rows = []
     for change in changes:
         line = known(asked, change.name, change.name)
@@ -234,14 +234,14 @@ def what_if(
 
 def _concerned(response: Response, changes: Sequence[Change], measure: str | None) -> list[str]:
     """Measures that depend on changed contributors, or on what reads these."""
-    names = {name for own in changes for name in response.lines[known(response, own.name, own.name)]}
+    names = {name for change in changes for name in response.lines[known(response, change.name, change.name)]}
     system = response.simulation.system
-    names |= {own.name for own in system.contributors if names & set(reads_of(own))}
+    names |= {contributor.name for contributor in system.contributors if names & set(reads_of(contributor))}
     asked = response.measures if measure is None else response.of(measure).measures
     found = [own.name for own in asked if names & {each.name for each in response.acting(own)}]
     if not found:
         which = "a measure" if measure is None else repr(measure)
-        changed_ones = ", ".join(own.name for own in changes)
+        changed_ones = ", ".join(change.name for change in changes)
         builds = [looked_at(response.simulation, response.source(own)).builds for own in asked]
         how = f"; not seen to act in {min(builds)} builds" if all(builds) else ""
         raise InputError(f"expected contributors on which {which} depends, got {changed_ones}{how}")
@@ -314,7 +314,7 @@ def _below(count: int) -> float:
 
 
 def _edges(values: dict[str, Array]) -> Array:
-    every = np.concatenate([own[np.isfinite(own)] for own in values.values()])
+    every = np.concatenate([value[np.isfinite(value)] for value in values.values()])
     if not every.size or not every.max() > every.min():
         middle = float(every[0]) if every.size else 0.0
         return np.array([middle - 0.5, middle + 0.5])

@@ -94,13 +94,13 @@ def blame_of(response: Response, sampled: PickFreeze, shapley: ShapleyEffects | 
         return Blame(None, "no limits" if failing == 0 else "too few to blame anyone for them")
     if response.rough:
         return Blame(None, f"too few to blame anyone, and no smooth map from normals: {', '.join(response.rough)}")
-    points = [own for side, limit in limits for own in _points(LimitState(response, limit, side), seed)]
+    points = [point for side, limit in limits for point in _points(LimitState(response, limit, side), seed)]
     if not points:
         return Blame(None, "no design point found")
-    likely = ndtr(-np.array([own.beta for own in points]))
+    likely = ndtr(-np.array([point.beta for point in points]))
     weights = likely / likely.sum() if likely.sum() > 0.0 else np.full(len(points), 1.0 / len(points))
     shares = failure_shares(response, points, weights)
-    words = f"{len(points)} design points, the nearest at β = {min(own.beta for own in points):.2f}"
+    words = f"{len(points)} design points, the nearest at β = {min(point.beta for point in points):.2f}"
     return Blame("design points", words, {name: (own, math.nan) for name, own in shares.items()})
 
 
@@ -111,7 +111,7 @@ def _points(state: LimitState, seed: int) -> Sequence[DesignPoint]:
     places = min(max(int(most), FEWEST_PLACES), PLACES) if response.simulation.system.streams else 1
     positions = response.positions(places, "drawn" if places > 1 else "rest", int(generator.integers(2**31)))
     starts = STARTS if places > 1 else STARTS_ALONE
-    return [own for its in design_points(state, positions, places, starts, generator) for own in its]
+    return [own for design_point in design_points(state, positions, places, starts, generator) for own in design_point]
 
 
 def failure_shares(response: Response, points: Sequence[DesignPoint], weights: Array) -> Mapping[str, float]:
@@ -119,7 +119,7 @@ def failure_shares(response: Response, points: Sequence[DesignPoint], weights: A
 
     They are squared direction cosines, but of correlated contributors Shapley effects on the limit made linear there.
     """
-    squares = np.array([own.sensitivities**2 for own in points])
+    squares = np.array([point.sensitivities**2 for point in points])
     mean = weights @ squares
     found = {name: float(mean[own].sum()) for name, own in response.normals.items()}
     for block in response.copula.blocks:

@@ -48,7 +48,7 @@ def changes_of_run(run: Run, simulation: Simulation, accepted: Accepted | None =
     question = ChangesQuestion(
         accepted_ppm=accepted_ppm, ppk=ppk, seconds=max(took, SECONDS) / len(shown), most_builds=MOST_BUILDS
     )
-    limited = [own.name for own in response.measures if limits_of(own) != (None, None)]
+    limited = [measure.name for measure in response.measures if limits_of(measure) != (None, None)]
     if Effort.of(response.of(*limited), question).enough:
         found = changes_of(response, question, bad=shown)
         return found.model_copy(update={"further": bad[MOST_MEASURES:]})

@@ -124,11 +124,11 @@ def points_from(state: LimitState, starts: Array, positions: Positions, beyond: 
 def kept(points: Sequence[DesignPoint]) -> list[DesignPoint]:
     """Design points of a position that differ and are near enough to matter, the nearest first."""
     mine: list[DesignPoint] = []
-    for own in sorted(points, key=lambda each: each.distance):
-        if len(mine) == MOST or own.distance > (mine[0] if mine else own).distance + FARTHER:
+    for point in sorted(points, key=lambda each: each.distance):
+        if len(mine) == MOST or point.distance > (mine[0] if mine else point).distance + FARTHER:
             break
-        if not any(is_same(own.normals, other.normals) for other in mine):
-            mine.append(own)
+        if not any(is_same(point.normals, other.normals) for other in mine):
+            mine.append(point)
     return mine
 
 
@@ -319,7 +319,7 @@ def probed(
     state: LimitState, positions: Positions, points: Sequence[Sequence[DesignPoint]], generator: np.random.Generator
 ) -> tuple[Array, NDArray[np.int64]]:
     """Builds that fail where no design point says so, and their places: along each normal, and in random directions."""
-    beta = min((own[0].distance for own in points if own), default=FURTHEST)
+    beta = min((point[0].distance for point in points if point), default=FURTHEST)
     radius, acting = float(np.clip(beta + 1.0, 3.0, 6.5)), state.acting
     count = len(acting)
     if not count:
@@ -360,4 +360,4 @@ ABOUT: Final = 0.5
 
 
 def _explained(build: Array, points: Sequence[DesignPoint]) -> bool:
-    return any(own.beyond or float(own.sensitivities @ build) >= own.distance - ABOUT for own in points)
+    return any(point.beyond or float(point.sensitivities @ build) >= point.distance - ABOUT for point in points)

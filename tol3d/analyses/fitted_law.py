@@ -63,12 +63,12 @@ class Kind:
     fit: Callable[[Moments], Sequence[Array]]
 
 
-def _normal(own: Moments) -> Sequence[Array]:
-    return own.mean, own.sigma
+def _normal(moments: Moments) -> Sequence[Array]:
+    return moments.mean, moments.sigma
 
 
-def _pearson3(own: Moments) -> Sequence[Array]:
-    return own.skewness, own.mean, own.sigma
+def _pearson3(moments: Moments) -> Sequence[Array]:
+    return moments.skewness, moments.mean, moments.sigma
 
 
 def _beta(own: Moments) -> Sequence[Array]:
@@ -87,10 +87,10 @@ def _beta(own: Moments) -> Sequence[Array]:
     return first, second, own.mean - width * first / total, width
 
 
-def _student(own: Moments) -> Sequence[Array]:
+def _student(moments: Moments) -> Sequence[Array]:
     with np.errstate(all="ignore"):
-        freedoms = np.where(own.kurtosis > 0.0, 4.0 + 6.0 / own.kurtosis, np.nan)
-    return freedoms, own.mean, own.sigma * np.sqrt((freedoms - 2.0) / freedoms)
+        freedoms = np.where(moments.kurtosis > 0.0, 4.0 + 6.0 / moments.kurtosis, np.nan)
+    return freedoms, moments.mean, moments.sigma * np.sqrt((freedoms - 2.0) / freedoms)
 
 
 KINDS: Final = (
@@ -115,7 +115,7 @@ def fitted(values: Array, seed: int = 1) -> FittedLaw:
         if not np.isfinite(arguments).all():
             continue
         statistic = float(_distance(kind, sample, arguments)[0])
-        own = (statistic, kind, [float(each[0]) for each in arguments])
+        own = (statistic, kind, [float(argument[0]) for argument in arguments])
         p_value = _p_value(kind, own[2], statistic, sample.shape[1], seed)
         found.append((*own, p_value))
         if p_value > LEVEL:
@@ -142,7 +142,7 @@ def _distance(kind: Kind, samples: Array, arguments: Sequence[Array]) -> Array:
     count = samples.shape[1]
     ordered = np.sort(samples, axis=1)
     nearly = BEYOND / count
-    below = np.clip(kind.law.cdf(ordered, *(own[:, None] for own in arguments)), nearly, 1.0 - nearly)
+    below = np.clip(kind.law.cdf(ordered, *(argument[:, None] for argument in arguments)), nearly, 1.0 - nearly)
     weights = (2.0 * np.arange(1, count + 1) - 1.0) / count
     return np.asarray(-count - (weights * (np.log(below) + np.log1p(-below[:, ::-1]))).sum(axis=1))
 

@@ -168,7 +168,7 @@ class Points:
         sizes = np.maximum(np.linalg.norm(self.gradients, axis=1), LEAST)
         weights = np.exp(-0.5 * self.betas**2) / math.sqrt(2 * math.pi) / self.count
         changes = [self.state.change(self.normals, *ends) / (2 * STEP) / sizes for ends in nudged]  # of β
-        return np.array([-float((weights * own).sum()) for own in changes]) / max(float(self.each.sum()), LEAST)
+        return np.array([-float((weights * change).sum()) for change in changes]) / max(float(self.each.sum()), LEAST)
 
 
 @dataclass(frozen=True, eq=False)

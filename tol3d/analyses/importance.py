@@ -171,7 +171,7 @@ def _estimate(state: LimitState, found: Drawn, places: Places, spent: int, notes
     error = math.sqrt(variance)
     interval = weighted_interval(probability, error, freedoms, unseen)
     if few and probability <= 0.5:  # may be missed by draws in all directions
-        outer = float(np.mean([Mixture.about(own, state, None).outer for own in places.points]))
+        outer = float(np.mean([Mixture.about(point, state, None).outer for point in places.points]))
         around = max(AROUND * len(own), 1.0)
         interval = interval[0], min(1.0, max(interval[1], probability - math.log(0.025) * outer / around))
     unseated = own[found.unseated & ~beyond[found.places]].sum() / (own[~beyond[found.places]].sum() or 1.0)

@@ -54,7 +54,7 @@ class KeptBatches:
             packages: whose modules decide values, as they stand on the disk.
         """
         _delete(PREFIX, older_than=OLD)
-        programs = [_program(own) for own in sorted(set(packages))]
+        programs = [_program(package) for package in sorted(set(packages))]
         return cls(_digest(json.dumps([fingerprint, programs], sort_keys=True).encode()))
 
     def evaluated(self, asked: str, builds: Mapping[str, Array], evaluate: Callable[[], Batch]) -> Batch:
@@ -94,7 +94,7 @@ def _program(package: str) -> list[tuple[str, int, int]]:
         return []
     folder = Path(spec.origin).parent
     files = sorted(folder.rglob("*.py")) if spec.submodule_search_locations is not None else [Path(spec.origin)]
-    stated = [(str(own), own.stat()) for own in files]
+    stated = [(str(file), file.stat()) for file in files]
     return [(name, own.st_size, own.st_mtime_ns) for name, own in stated]
 
 

@@ -99,7 +99,7 @@ class LimitState:
 def concerned(response: Response, measure: Measure) -> frozenset[str]:
     """Contributors that act on a measure, those that these read, and those that are correlated with them."""
     names = response.read_by({own.name for own in response.acting(measure)})
-    return names.union(*(own.names for own in response.copula.blocks if names & set(own.names)))
+    return names.union(*(block.names for block in response.copula.blocks if names & set(block.names)))
 
 
 def repeated(positions: Positions, times: int) -> Positions:

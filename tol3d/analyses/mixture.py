@@ -103,14 +103,14 @@ class Mixture:
         if not points:
             none = np.zeros((0, state.dimension))
             return cls((), none, np.zeros(0), 1.0, 0.0, np.zeros(0), state.acting, 0.0)
-        distances = np.array([own.distance for own in points])
+        distances = np.array([point.distance for point in points])
         plain = PLAIN_IF_COMMON if ndtr(-distances).sum() > COMMON else PLAIN
         likely = np.exp(-0.5 * (distances**2 - distances[0] ** 2))
         likely = np.maximum(likely / likely.sum(), 0.1 / len(points))
         ends = distances - 1.0 / np.maximum(distances, 1.0)
         return cls(
-            shapes or [Shape.plain(own) for own in points],
-            np.array([own.sensitivities for own in points]),
+            shapes or [Shape.plain(point) for point in points],
+            np.array([point.sensitivities for point in points]),
             ends,
             plain,
             AROUND,
@@ -149,7 +149,7 @@ class Mixture:
     def log_ratio(self, z: Array) -> tuple[Array, Array]:
         """Logarithm of its density by that of plain draws (n,), and of the part that is not about design points."""
         # φ(z - c) / φ(z) = exp(z·c - c²/2); beyond a plane 1 / Φ(-end), elsewhere 0
-        about = np.array([own.log_ratio(z) for own in self.shapes]).reshape(len(self.shapes), len(z)).T
+        about = np.array([shape.log_ratio(z) for shape in self.shapes]).reshape(len(self.shapes), len(z)).T
         far = (z[:, self.acting] ** 2).sum(axis=1) >= self.radius**2
         with np.errstate(divide="ignore"):
             past = np.log(z @ self.normals.T >= self.ends) - np.log(ndtr(-self.ends))

@@ -65,15 +65,15 @@ class Input:
 def inputs_of(response: Response, *, position: bool = False) -> tuple[Input, ...]:
     """Contributors that act on some of the measures, correlated ones together; last the position, if asked for."""
     acting = acting_names(response)
-    together = {name: own.names for own in response.copula.blocks for name in own.names}
-    groups = dict.fromkeys(together.get(own.name, (own.name,)) for own in response.contributors)
-    found = [Input(own) for own in groups if acting.intersection(own)]
+    together = {name: block.names for block in response.copula.blocks for name in block.names}
+    groups = dict.fromkeys(together.get(contributor.name, (contributor.name,)) for contributor in response.contributors)
+    found = [Input(group) for group in groups if acting.intersection(group)]
     return (*found, Input(())) if position else tuple(found)
 
 
 def acting_names(response: Response) -> frozenset[str]:
     """Contributors that act on some of the measures, and those that they read."""
-    known = {own.name: own for own in response.contributors}
+    known = {contributor.name: contributor for contributor in response.contributors}
     names = {own.name for measure in response.measures for own in response.acting(measure)}
     while added := {name for own in names for name in reads_of(known[own])} - names:
         names |= added
@@ -144,7 +144,11 @@ class Pairs:
     @cached_property
     def _read(self) -> frozenset[str]:
         """Contributors that read others or are read: their deviations are not of their own normals alone."""
-        readers = {own.name: reads_of(own) for own in self.response.contributors if reads_of(own)}
+        readers = {
+            contributor.name: reads_of(contributor)
+            for contributor in self.response.contributors
+            if reads_of(contributor)
+        }
         return frozenset(readers).union(*readers.values())
 
 

@@ -59,12 +59,12 @@ class Places:
     @property
     def beyond(self) -> NDArray[np.bool_]:
         """True where the build at the origin fails; draws are then made about the builds that do not fail."""
-        return np.array([any(own.beyond for own in each) for each in self.points], dtype=bool)
+        return np.array([any(own.beyond for own in point) for point in self.points], dtype=bool)
 
     @property
     def rare(self) -> Array:
         """By first order, how often builds fail, or do not where the one at the origin fails; see `first_order`."""
-        return np.array([sum(float(ndtr(-own.distance)) for own in each) for each in self.points])
+        return np.array([sum(float(ndtr(-own.distance)) for own in point) for point in self.points])
 
     @property
     def first_order(self) -> float | None:
@@ -103,7 +103,7 @@ def with_more(state: LimitState, places: Places, ends: Array, where: NDArray[np.
     """
     if not len(ends):
         return places
-    points = [list(own) for own in places.points]
+    points = [list(point) for point in places.points]
     beyond, everywhere = places.beyond, len(ends) * places.count
     anywhere = affordable(state, everywhere, 1) == everywhere
     for place in range(places.count):
@@ -118,8 +118,8 @@ def shaped(state: LimitState, places: Places) -> Places:
     """Places whose draws follow the curvatures at all design points; where these take long, at the nearest of each."""
     every = sum(map(len, places.points)) * len(state.acting) ** 2 <= CURVED_BUILDS
     shapes = [
-        [Shape.curved(state, own) if every or k == 0 else Shape.plain(own) for k, own in enumerate(each)]
-        for each in places.points
+        [Shape.curved(state, own) if every or k == 0 else Shape.plain(own) for k, own in enumerate(point)]
+        for point in places.points
     ]
     return replace(places, shapes=shapes)
 
@@ -134,11 +134,11 @@ def _centres(places: Places, most: int) -> list[DesignPoint]:
 
 def _betas_elsewhere(state: LimitState, centres: Sequence[DesignPoint], positions: Positions, count: int) -> Array:
     """About how far from failing positions are (count,), from what the limit state is there at known design points."""
-    builds = np.repeat(np.array([own.normals for own in centres]), count, axis=0)
+    builds = np.repeat(np.array([centre.normals for centre in centres]), count, axis=0)
     at = {name: np.concatenate([own] * len(centres)) for name, own in positions.items()}
     inside = np.nan_to_num(state.at(builds, at)[0].reshape(len(centres), count), nan=0.0)
-    slopes = np.array([float(np.linalg.norm(own.gradient)) for own in centres])
-    betas = np.array([own.beta for own in centres])
+    slopes = np.array([float(np.linalg.norm(centre.gradient)) for centre in centres])
+    betas = np.array([centre.beta for centre in centres])
     return np.asarray((betas[:, None] + inside / slopes[:, None]).min(axis=0))
 
 
@@ -151,7 +151,7 @@ def _screened(state: LimitState, places: Places, generator: np.random.Generator)
     seen = _betas_elsewhere(state, centres, first, SEEN)
     rare = places.rare
     uneven = effective(rare) < places.count / 2
-    if seen.min() > min(own.beta for own in centres) - NEARER and not uneven:
+    if seen.min() > min(centre.beta for centre in centres) - NEARER and not uneven:
         return places
     many = state.response.positions(SCREENED, "drawn", int(generator.integers(2**31)))
     betas = _betas_elsewhere(state, centres[:8], many, SCREENED)

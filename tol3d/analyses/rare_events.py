@@ -136,7 +136,7 @@ def rare_event(
         else:
             estimate = Estimate(where.first_order, None, None, warnings=_unsure(where.points, ()))
         first = where.first_order
-        points = tuple(sorted((own for its in where.points for own in its), key=lambda own: own.beta))
+        points = tuple(sorted((own for point in where.points for own in point), key=lambda own: own.beta))
     if idle := response.nothing_acts(state.measure):
         estimate = replace(estimate, warnings=(f"{idle}; the bound is that of plain draws",))
     evaluations = response.evaluations - before
@@ -145,7 +145,7 @@ def rare_event(
 
 def _unsure(points: Sequence[Sequence[DesignPoint]], more: tuple[str, ...]) -> tuple[str, ...]:
     """Warnings of what the approximation does not see."""
-    lists = [own for own in points if own]
+    lists = [point for point in points if point]
     if not lists:
         return ("no design point was found within 9 standard deviations: nothing is known (--method subset)", *more)
     notes = list(more)

@@ -91,12 +91,12 @@ def rare_section(name: str, seed: int, response: Response, events: Sequence[Rare
         response: of all measures.
         events: of the limits.
     """
-    units = {own.name: own.unit for own in response.measures}
+    units = {measure.name: measure.unit for measure in response.measures}
     return made(
         RareEvents,
         scene=name,
         seed=seed,
-        limits=[_limit(response, own, units[own.measure]) for own in events],
+        limits=[_limit(response, event, units[event.measure]) for event in events],
     )
 
 
@@ -139,12 +139,12 @@ def _build(response: Response, point: DesignPoint) -> DesignBuild:
     ways = [
         made(
             WayThere,
-            name=own.name,
-            deviations=(trials.deviations[0, response.slices[own.name]] / own.per_unit).tolist(),
-            unit=own.unit,
-            percent=100.0 * shares[own.name],
+            name=contributor.name,
+            deviations=(trials.deviations[0, response.slices[contributor.name]] / contributor.per_unit).tolist(),
+            unit=contributor.unit,
+            percent=100.0 * shares[contributor.name],
         )
-        for own in sorted(response.contributors, key=lambda each: -shares[each.name])
+        for contributor in sorted(response.contributors, key=lambda each: -shares[each.name])
     ]
     return made(DesignBuild, beta=point.beta, positions=_positions(response, trials), contributors=ways)
 

@@ -84,10 +84,15 @@ def _without_jumps(response: Response, slopes: Array) -> Array:
 
     A part that floats anywhere in the room of a pattern lies elsewhere as soon as the start of its draw changes.
     """
-    columns = [k for own in response.contributors if own.unit == "1" for k in _columns(response.slices[own.name])]
+    columns = [
+        k
+        for contributor in response.contributors
+        if contributor.unit == "1"
+        for k in _columns(response.slices[contributor.name])
+    ]
     if not columns:
         return slopes
-    draws = [response.draws[own.name] for own in response.contributors]
+    draws = [response.draws[contributor.name] for contributor in response.contributors]
     sigmas = np.concatenate([component_sigmas(draw) for draw in draws])
     shifts = np.zeros((len(columns), response.components))
     shifts[np.arange(len(columns)), columns] = sigmas[columns]

@@ -149,7 +149,7 @@ class Response:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the measures."""
-        return tuple(own.name for own in self.measures)
+        return tuple(measure.name for measure in self.measures)
 
     @property
     def contributors(self) -> Sequence[Contributor]:
@@ -159,9 +159,11 @@ class Response:
     @cached_property
     def lines(self) -> Mapping[str, tuple[str, ...]]:
         """Contributors by the line of the scene that states their tolerance, and is changed for all of them at once."""
-        found = {own.name: own.contributors for own in self.simulation.lines}
+        found = {line.name: line.contributors for line in self.simulation.lines}
         stated = {name for own in found.values() for name in own}
-        found |= {own.name: (own.name,) for own in self.contributors if own.name not in stated}
+        found |= {
+            contributor.name: (contributor.name,) for contributor in self.contributors if contributor.name not in stated
+        }
         return _Known("a line of the scene that states a tolerance", found)
 
     def source(self, measure: Measure) -> Measure:
@@ -207,8 +209,8 @@ class Response:
         Raises:
             InputError: one is not among them, or is a curve.
         """
-        known = {own.name: own for own in self.measures}
-        curves = {own.name for own in self.curves.values()}
+        known = {measure.name: measure for measure in self.measures}
+        curves = {curve.name for curve in self.curves.values()}
         for name in names:
             if name in curves and name not in known:
                 ends = " or ".join(repr(end) for end, own in self.curves.items() if own.name == name)
@@ -264,7 +266,7 @@ class Response:
             asked = repr((None if self.method is None else self.simulation.study.engine, self.names))
             builds = {"": trials.deviations, **{f"position {name}": own for name, own in trials.positions.items()}}
             values, codes = self.batches.evaluated(asked, builds, lambda: self._in_pieces(trials))
-        kept = np.array([own.keeps_overlap for own in self.measures])
+        kept = np.array([measure.keeps_overlap for measure in self.measures])
         values[(codes != OK) & ~kept] = np.nan
         self.count.evaluations += len(trials)
         return Values(values, codes, system.statuses.texts)
@@ -324,7 +326,7 @@ class Response:
         values = np.empty((len(trials), len(self.measures)))
         codes = np.zeros(values.shape, dtype=np.int8)
         first = 0
-        sources = [self.source(own) for own in self.measures]
+        sources = [self.source(measure) for measure in self.measures]
         evaluation = Evaluation(self.simulation.system, self.method)
         for asked in evaluation.asked(trials, [*{own.name: own for own in sources}.values()]):
             rows = slice(first, first + len(asked.trials))
@@ -401,8 +403,8 @@ class Response:
     @cached_property
     def _steps(self) -> Array:
         found = np.empty(self.components)
-        for own in self.contributors:
-            found[self.slices[own.name]] = NUDGE.get(own.unit, 1e-3)
+        for contributor in self.contributors:
+            found[self.slices[contributor.name]] = NUDGE.get(contributor.unit, 1e-3)
         return found
 
     @cached_property
@@ -432,7 +434,7 @@ class Response:
         redrawn = [DrawnAs(*own) for own in self.draws.items()]
         found = ranges(redrawn, self.slices, self.mean[None], self.measures, values, self.simulation.system.cost)
         unknown = np.full(len(redrawn), np.nan)
-        return np.array([found.get(own.name, unknown) for own in self.measures])
+        return np.array([found.get(measure.name, unknown) for measure in self.measures])
 
     # what is drawn ----------------------------------------------------------------------------------
 
@@ -440,21 +442,23 @@ class Response:
     def normals(self) -> Mapping[str, slice]:
         """Which standard normals are whose."""
         found, first = {}, 0
-        for own in self.contributors:
-            count = normal_count(self.draws[own.name])
-            found[own.name] = slice(first, first + count)
+        for contributor in self.contributors:
+            count = normal_count(self.draws[contributor.name])
+            found[contributor.name] = slice(first, first + count)
             first += count
         return _Known("a contributor", found)
 
     @property
     def dimension(self) -> int:
         """Number of standard normals."""
-        return max((own.stop for own in self.normals.values()), default=0)
+        return max((normal.stop for normal in self.normals.values()), default=0)
 
     @property
     def rough(self) -> tuple[str, ...]:
         """Contributors without a smooth map from normals: methods that need one refuse them by name."""
-        return tuple(own.name for own in self.contributors if groups_of(self.draws[own.name]) is None)
+        return tuple(
+            contributor.name for contributor in self.contributors if groups_of(self.draws[contributor.name]) is None
+        )
 
     def read_by(self, names: Collection[str]) -> frozenset[str]:
         """Contributors, those that their draws read, and so on."""
@@ -590,7 +594,7 @@ class Response:
 
     def _made_again(self, changes: Mapping[str, Callable[[Draw], Draw]], *, physical: bool = True) -> "Response":
         """With other draws, and those that follow them."""
-        known = {own.name: own for own in self.contributors}
+        known = {contributor.name: contributor for contributor in self.contributors}
         made: dict[str, Draw] = {}
         for name, change in changes.items():
             before = self.drawn_by(name)
@@ -624,11 +628,13 @@ def response_of(simulation: Simulation, *, analytic: bool = False) -> Response:
     exact = not analytic and simulation.study.engine != ANALYTIC_METHOD
     method = method_of(simulation, materials_of(simulation)) if exact else None
     measures, curves = list[Measure](), dict[str, Measure]()
-    for own in simulation.system.measures:
-        ends = _ends(own) if own.take == "curve" else (own,)
+    for measure in simulation.system.measures:
+        ends = _ends(measure) if measure.take == "curve" else (measure,)
         measures += ends
-        curves |= {end.name: own for end in ends if end is not own}
-    draws = _Known("a contributor", {own.name: own.draw for own in simulation.system.contributors})
+        curves |= {end.name: measure for end in ends if end is not measure}
+    draws = _Known(
+        "a contributor", {contributor.name: contributor.draw for contributor in simulation.system.contributors}
+    )
     return Response(simulation, tuple(measures), method, draws, curves)
 
 

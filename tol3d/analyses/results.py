@@ -38,7 +38,7 @@ def results_of(
             status_column(measure.name): values.statuses[:, k],
         }
         form = system.closed_form(measure) if response.source(measure) is measure else None
-        grid = grid_of(measure, form, [own[:, k] for own in pilots])
+        grid = grid_of(measure, form, [pilot[:, k] for pilot in pilots])
         outcome = outcome_of(columns, method, measure.name, system.statuses.lacking)
         found[measure.name] = sample_summary(measure, Sample.of(measure, outcome, grid, rows), study.ppk_by)
     return found

@@ -50,10 +50,10 @@ def shapley_effects(pairs: Pairs, names: Sequence[str]) -> ShapleyEffects:
     walkers = pairs.second.normals.copy()
     turned = [
         (
-            np.array([response.normals[name].start for name in own.names]),
-            [_turn(own, _known(names, order, own)) for order in orders],
+            np.array([response.normals[name].start for name in block.names]),
+            [_turn(block, _known(names, order, block)) for order in orders],
         )
-        for own in response.copula.blocks
+        for block in response.copula.blocks
     ]
     outcomes = []
     for step in range(len(names) + 1):
@@ -69,9 +69,9 @@ def shapley_effects(pairs: Pairs, names: Sequence[str]) -> ShapleyEffects:
         outcomes.append(asked(response, response.deviations(normals), pairs.first.positions))
     weights = resampled(pairs.count, pairs.seed)
     ranks = np.array([np.argsort(order) for order in orders]).reshape(len(orders), len(names))
-    owners = np.repeat(ranks, [len(own) for own in rows], axis=0)
-    values = _shares(np.array([own.values for own in outcomes]), owners, weights)
-    failures = _shares(np.array([own.fails for own in outcomes]), owners, weights)
+    owners = np.repeat(ranks, [len(row) for row in rows], axis=0)
+    values = _shares(np.array([outcome.values for outcome in outcomes]), owners, weights)
+    failures = _shares(np.array([outcome.fails for outcome in outcomes]), owners, weights)
     return ShapleyEffects(tuple(names), values[:, 0], errors_of(values), failures[:, 0], errors_of(failures))
 
 

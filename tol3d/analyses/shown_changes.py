@@ -72,47 +72,47 @@ class ProposalRow:
     after: Annotated[Mapping[Heading, str], Shows("{key}")]
 
 
-def _of_measure(name: str, own: MeasureChanges) -> Iterator[PageItem]:
-    unit = own.unit
-    yield title(name, f" · limits {_limits(own)} · {own.builds} builds each")
+def _of_measure(name: str, measure_changes: MeasureChanges) -> Iterator[PageItem]:
+    unit = measure_changes.unit
+    yield title(name, f" · limits {_limits(measure_changes)} · {measure_changes.builds} builds each")
     yield BLANK
-    rows = [("as it is", ProposalRow("", dict(zip(AFTER, cells_of(own.now, unit), strict=True))))]
-    for each in own.proposals:
-        after = dict(zip(AFTER, cells_of(each.after, unit), strict=True))
-        rows.append((proposal_text(each), ProposalRow(_how_much(each), after)))
-        rows += [(f"  {_beside(other)}", ProposalRow("", dict.fromkeys(AFTER, ""))) for other in each.beside]
+    rows = [("as it is", ProposalRow("", dict(zip(AFTER, cells_of(measure_changes.now, unit), strict=True))))]
+    for proposal in measure_changes.proposals:
+        after = dict(zip(AFTER, cells_of(proposal.after, unit), strict=True))
+        rows.append((proposal_text(proposal), ProposalRow(_how_much(proposal), after)))
+        rows += [(f"  {_beside(other)}", ProposalRow("", dict.fromkeys(AFTER, ""))) for other in proposal.beside]
     yield declared_table("change", rows)
-    if table := _taken_table(own):
+    if table := _taken_table(measure_changes):
         yield BLANK
         yield table
 
 
-def proposal_text(own: Proposal) -> str:
+def proposal_text(proposal: Proposal) -> str:
     """Its steps: `half centre distance`, `pinion tooth thickness (E_sns and E_sni)`."""
-    return " and ".join(f"half {each.contributor}" if each.change is None else _moved(each) for each in own.steps)
+    return " and ".join(f"half {step.contributor}" if step.change is None else _moved(step) for step in proposal.steps)
 
 
-def _moves(own: Proposal) -> bool:
-    return all(each.change is not None for each in own.steps)
+def _moves(proposal: Proposal) -> bool:
+    return all(step.change is not None for step in proposal.steps)
 
 
-def _moved(own: Step) -> str:
-    plain = own.nominal in own.contributor.lower().split() or own.nominal == "nominal"
-    return own.contributor if plain else f"{own.contributor} ({own.nominal})"
+def _moved(step: Step) -> str:
+    plain = step.nominal in step.contributor.lower().split() or step.nominal == "nominal"
+    return step.contributor if plain else f"{step.contributor} ({step.nominal})"
 
 
-def _how_much(own: Proposal) -> Shown | str:
+def _how_much(proposal: Proposal) -> Shown | str:
     """By how much a nominal moves, or what a tolerance becomes; of several changes nothing."""
-    if len(own.steps) > 1:
+    if len(proposal.steps) > 1:
         return ""
-    (step,) = own.steps
+    (step,) = proposal.steps
     return step.becomes if step.change is None else _change(step)
 
 
-def _beside(own: Beside) -> str:
+def _beside(beside: Beside) -> str:
     """Another measure before and after a change: `lost motion 1′25″ → 1′50″`."""
-    text = f"{own.measure} {_valued(own.now.mean, own.unit)} → {_valued(own.after.mean, own.unit)}"
-    return f"{text}, Ppk {_ppk(own.now)} → {_ppk(own.after)}" if own.has_limits else text
+    text = f"{beside.measure} {_valued(beside.now.mean, beside.unit)} → {_valued(beside.after.mean, beside.unit)}"
+    return f"{text}, Ppk {_ppk(beside.now)} → {_ppk(beside.after)}" if beside.has_limits else text
 
 
 @dataclass(frozen=True)
@@ -123,20 +123,27 @@ class TakenRow:
     by_spread: Annotated[str, Shows("by its spread")]
 
 
-def _taken_table(own: MeasureChanges) -> Table | None:
+def _taken_table(measure_changes: MeasureChanges) -> Table | None:
     """Table of causes of a mean off nominal; None if there are none."""
-    unit, sigma = own.unit, own.now.sigma or 0.0
-    large = [each for each in own.taken if abs(each.first_order + each.second_order) > LEAST_TAKEN * sigma]
-    if not large and abs(own.taken_together or 0.0) <= max(LEAST_TAKEN * sigma, SURE * (own.taken_error or 0.0)):
+    unit, sigma = measure_changes.unit, measure_changes.now.sigma or 0.0
+    large = [each for each in measure_changes.taken if abs(each.first_order + each.second_order) > LEAST_TAKEN * sigma]
+    if not large and abs(measure_changes.taken_together or 0.0) <= max(
+        LEAST_TAKEN * sigma, SURE * (measure_changes.taken_error or 0.0)
+    ):
         return None
     shown = large[:MOST_TAKEN]
-    rest = [each for each in own.taken if each not in shown]
+    rest = [each for each in measure_changes.taken if each not in shown]
     rows = [(each.contributor, TakenRow(_off(each.first_order, unit), _off(each.second_order, unit))) for each in shown]
     if rest:
         sums = (sum(each.first_order for each in rest), sum(each.second_order for each in rest))
         rows.append((counted(len(rest), "other"), TakenRow(*(_off(value, unit) for value in sums))))
-    rows.append(("interactions and sampling", TakenRow("", _with_error(own.taken_together, own.taken_error, unit))))
-    return declared_table(f"mean off nominal ({_valued(own.nominal, unit)})", rows)
+    rows.append(
+        (
+            "interactions and sampling",
+            TakenRow("", _with_error(measure_changes.taken_together, measure_changes.taken_error, unit)),
+        )
+    )
+    return declared_table(f"mean off nominal ({_valued(measure_changes.nominal, unit)})", rows)
 
 
 def _with_error(value: float | None, error: float | None, unit: str) -> Shown | str:
@@ -150,17 +157,19 @@ def _off(value: float | None, unit: str) -> Shown | str:
     return NOTHING if value is None else Shown(_signed(value, unit), value)
 
 
-def _ppk(own: Spread) -> str:
-    return NOTHING if own.ppk is None else unsigned_zero(f"{own.ppk:.2f}")
+def _ppk(spread: Spread) -> str:
+    return NOTHING if spread.ppk is None else unsigned_zero(f"{spread.ppk:.2f}")
 
 
-def _limits(own: MeasureChanges) -> str:
-    lower, upper = own.lower_limit, own.upper_limit
+def _limits(measure_changes: MeasureChanges) -> str:
+    lower, upper = measure_changes.lower_limit, measure_changes.upper_limit
     if lower is None or upper is None:
         return "".join(
-            f"{sign} {_limit(limit, own.unit)}" for sign, limit in (("≥", lower), ("≤", upper)) if limit is not None
+            f"{sign} {_limit(limit, measure_changes.unit)}"
+            for sign, limit in (("≥", lower), ("≤", upper))
+            if limit is not None
         )
-    return f"{_limit(lower, own.unit)} to {_limit(upper, own.unit)}"
+    return f"{_limit(lower, measure_changes.unit)} to {_limit(upper, measure_changes.unit)}"
 
 
 def _limit(value: float, unit: str) -> str:
@@ -177,10 +186,10 @@ def _signed(value: float, unit: str) -> str:
     return f"{'−' if value < 0.0 else '+'}{text}"
 
 
-def _change(own: Step) -> Shown:
-    change = own.change or 0.0
+def _change(step: Step) -> Shown:
+    change = step.change or 0.0
     digits, sign = f"{abs(change):.4g}", "−" if change < 0.0 else "+"
-    return Shown(f"{sign}{digits} {UNIT_SIGNS.get(own.unit, own.unit)}", change)
+    return Shown(f"{sign}{digits} {UNIT_SIGNS.get(step.unit, step.unit)}", change)
 
 
 # below a verdict ----------------------------------------------------------------------------------
@@ -195,7 +204,7 @@ def changes_lines(found: Changes, where: str) -> list[PageItem]:
     """
     if not found.measures:
         return [note(f"tol3d changes {where} asks what to change")]
-    builds = min(own.builds for own in found.measures.values())
+    builds = min(measure.builds for measure in found.measures.values())
     words = f" · simulated, {builds} builds each; tol3d changes {where} has more"
     blocks: list[PageItem] = [title("what to change", words), *_answers(found)]
     if found.further:
@@ -216,9 +225,9 @@ def _answers(found: Changes) -> Iterator[PageItem]:
         yield from map(note, _brief(own, found.ppk))
 
 
-def _brief(own: MeasureChanges, ppk: float) -> Iterator[str]:
+def _brief(measure_changes: MeasureChanges, ppk: float) -> Iterator[str]:
     """The best changes, the best first, and whether one suffices."""
-    first, rest = own.proposals[: BRIEF_TOLD - 1], own.proposals[BRIEF_TOLD - 1 :]
+    first, rest = measure_changes.proposals[: BRIEF_TOLD - 1], measure_changes.proposals[BRIEF_TOLD - 1 :]
     if all(_moves(each) for each in first):  # a tolerance is among them, too
         rest = [each for each in rest if not _moves(each)] or rest
     for k, each in enumerate([*first, *rest[:1]]):
@@ -228,12 +237,13 @@ def _brief(own: MeasureChanges, ppk: float) -> Iterator[str]:
         ]
         beside = "".join(f"; {_beside(other)}" for other in each.beside[:BRIEF_TOLD])
         yield f" {'or ' if k else ''}{' and '.join(steps)}: {_told(each.after)}{beside}"
-    if not own.tried:
+    if not measure_changes.tried:
         yield " no tolerance that acts on it can be changed: change the nominal geometry or the limit"
         return
-    if not own.proposals:
-        yield f" none of {counted(own.tried, 'change')} that were simulated helps without harm to another measure"
-    if not any(each.reaches(ppk) for each in own.proposals):
+    if not measure_changes.proposals:
+        tried = counted(measure_changes.tried, "change")
+        yield f" none of {tried} that were simulated helps without harm to another measure"
+    if not any(proposal.reaches(ppk) for proposal in measure_changes.proposals):
         yield f" Ppk {ppk:g} is reached by none; tol3d allocate looks for tolerances that reach it"
 
 
@@ -287,32 +297,36 @@ NO_CHANGES: Final = "no limit is left more often than is accepted"
 def changes_charts(name: str, found: Changes) -> Charts:
     """Mean ± 3 sigma of each change."""
     charts = [changes_chart(measure, own) for measure, own in list(found.measures.items())[:MOST]]
-    rows = [[own] for own in charts] or [[Chart(NO_CHANGES, Axis("", 0.0, 1.0), (), instead=NO_CHANGES)]]
+    rows = [[chart] for chart in charts] or [[Chart(NO_CHANGES, Axis("", 0.0, 1.0), (), instead=NO_CHANGES)]]
     return Charts(rows, f"{name} · what to change", WIDTH)
 
 
-def changes_chart(name: str, own: MeasureChanges) -> Chart:
+def changes_chart(name: str, measure_changes: MeasureChanges) -> Chart:
     """A row for each change of a measure with mean ± 3 sigma and the fraction out of limits."""
-    changes = changes_of_one(own)
+    changes = changes_of_one(measure_changes)
     rows = [
         Range(row, mean - 3 * sigma, mean + 3 * sigma, mean, role, words, share_text(after.out_ppm))
         for row, (words, after, role) in enumerate(changes)
         if (mean := after.mean) is not None and (sigma := after.sigma) is not None
     ]
-    limits = [(word, end) for word, end in (("LSL", own.lower_limit), ("USL", own.upper_limit)) if end is not None]
-    marks = [Mark(limit, "limit", label=f"{word} {limit_text(limit, own.unit)}") for word, limit in limits]
+    limits = [
+        (word, end)
+        for word, end in (("LSL", measure_changes.lower_limit), ("USL", measure_changes.upper_limit))
+        if end is not None
+    ]
+    marks = [Mark(limit, "limit", label=f"{word} {limit_text(limit, measure_changes.unit)}") for word, limit in limits]
     ends = [end for row in rows for end in (row.low, row.high) if end is not None]
-    across = spanned(name, np.array([*ends, *(limit for _, limit in limits)]), own.unit)
+    across = spanned(name, np.array([*ends, *(limit for _, limit in limits)]), measure_changes.unit)
     panel = Panel(Names([words for words, _, _ in changes]), rows, marks)
     table = [(words, f"{share_text(after.out_ppm)} out of limits") for words, after, _ in changes]
     return Chart(f"{name} after each change", across, [panel], name, "mean ± 3 sigma; out of limits", table)
 
 
-def changes_of_one(own: MeasureChanges) -> list[tuple[str, Spread, Role]]:
+def changes_of_one(measure_changes: MeasureChanges) -> list[tuple[str, Spread, Role]]:
     """Every change of a measure in words, what it makes of it, and its role."""
-    found: list[tuple[str, Spread, Role]] = [("as it is", own.now, "plain")]
-    for each in own.proposals:
-        moves = any(step.change is not None for step in each.steps)
-        role: Role = "series-0" if len(each.steps) > 1 else "series-2" if moves else "series-1"
-        found.append((proposal_text(each), each.after, role))
+    found: list[tuple[str, Spread, Role]] = [("as it is", measure_changes.now, "plain")]
+    for proposal in measure_changes.proposals:
+        moves = any(step.change is not None for step in proposal.steps)
+        role: Role = "series-0" if len(proposal.steps) > 1 else "series-2" if moves else "series-1"
+        found.append((proposal_text(proposal), proposal.after, role))
     return found

@@ -43,45 +43,50 @@ def effects_report(found: Effects) -> Page:
     return page(*blocks, BLANK, note(WORDS + (f"; {where}" if where else "")))
 
 
-def _table(own: MeasureEffects) -> Table:
-    parts: list[tuple[str, ContributorEffects]] = list(own.contributors.items())
-    if own.position is not None:
-        parts.append(("position", own.position))
+def _table(effects: MeasureEffects) -> Table:
+    parts: list[tuple[str, ContributorEffects]] = list(effects.contributors.items())
+    if effects.position is not None:
+        parts.append(("position", effects.position))
     ranked = sorted(parts, key=lambda each: -_size(each[1]))
-    return declared_table("", ranked, own.unit)
+    return declared_table("", ranked, effects.unit)
 
 
-def _size(own: ContributorEffects) -> float:
+def _size(contributor_effects: ContributorEffects) -> float:
     """By which contributors are ranked."""
-    shown = own.shapley or own.total
+    shown = contributor_effects.shapley or contributor_effects.total
     return shown.share if shown is not None else -1.0
 
 
-def _words(own: MeasureEffects) -> Sequence[str]:
-    if not own.contributors and own.position is None:
-        out = "" if own.failing_ppm is None else f", {share_text(own.failing_ppm)} out of limits"
-        return [f"{measured_text(own.mean, own.unit)} in all builds{out}: {own.failures_words}"]
-    spread = [f"mean {measured_text(own.mean, own.unit)}, sigma {measured_text(own.sigma, own.unit)}"]
-    if own.sum_of_first is not None and own.sum_of_total is not None:
-        first, total = own.sum_of_first, own.sum_of_total
+def _words(effects: MeasureEffects) -> Sequence[str]:
+    if not effects.contributors and effects.position is None:
+        out = "" if effects.failing_ppm is None else f", {share_text(effects.failing_ppm)} out of limits"
+        return [f"{measured_text(effects.mean, effects.unit)} in all builds{out}: {effects.failures_words}"]
+    spread = [f"mean {measured_text(effects.mean, effects.unit)}, sigma {measured_text(effects.sigma, effects.unit)}"]
+    if effects.sum_of_first is not None and effects.sum_of_total is not None:
+        first, total = effects.sum_of_first, effects.sum_of_total
         spread.append(f"sum of first indices {_plain(first)}, of total ones {_plain(total)}")
-    groups = dict.fromkeys(tuple(each.together) for each in own.contributors.values() if len(each.together) > 1)
+    groups = dict.fromkeys(
+        tuple(contributor.together) for contributor in effects.contributors.values() if len(contributor.together) > 1
+    )
     told = [", ".join(spread)]
     if groups:
         together = "; ".join(", ".join(group) for group in groups)
         told.append(f"indices of correlated contributors are those of all together: {together}")
-    if own.not_seated:
+    if effects.not_seated:
         told.append(
-            f"{own.not_seated} of {own.builds} builds could not be assembled: left out of indices, counted as failures"
+            f"{effects.not_seated} of {effects.builds} builds could not be assembled: left out of indices, "
+            "counted as failures"
         )
-    if own.failing_ppm is not None:
-        by = "shares by " if own.failures_by else ""
-        told.append(f"failures: {share_text(own.failing_ppm)} of {own.builds} builds; {by}{own.failures_words}")
+    if effects.failing_ppm is not None:
+        by = "shares by " if effects.failures_by else ""
+        told.append(
+            f"failures: {share_text(effects.failing_ppm)} of {effects.builds} builds; {by}{effects.failures_words}"
+        )
     return told
 
 
-def _plain(own: Index) -> str:
-    return f"{own.share:.2f} ±{(own.high - own.low) / 2:.2f}"
+def _plain(index: Index) -> str:
+    return f"{index.share:.2f} ±{(index.high - index.low) / 2:.2f}"
 
 
 @dataclass(frozen=True)
@@ -97,11 +102,15 @@ class EffectRow:
     indices = Computed(Shows("{key}", "g"), lambda own: _numbers(own.of))
 
 
-def _numbers(own: ContributorEffects) -> Mapping[str, float | None]:
+def _numbers(contributor_effects: ContributorEffects) -> Mapping[str, float | None]:
     """Each index, and the ends of its 95 %."""
     ends = {"": "share", "_low_95": "low", "_high_95": "high"}
-    names = [name for name, shows in columns_of(own).items() if shows.form == "index"]
-    return {f"{name}{end}": getattr(getattr(own, name), key, None) for name in names for end, key in ends.items()}
+    names = [name for name, shows in columns_of(contributor_effects).items() if shows.form == "index"]
+    return {
+        f"{name}{end}": getattr(getattr(contributor_effects, name), key, None)
+        for name in names
+        for end, key in ends.items()
+    }
 
 
 def whole_table(found: Effects) -> Table:

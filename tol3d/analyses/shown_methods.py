@@ -76,21 +76,35 @@ class DeviationRow:
     unit_sign: Annotated[str, Shows("unit", "words")]
 
 
-def intervals_table(own: MeasureMethods) -> Table:
+def intervals_table(measure_methods: MeasureMethods) -> Table:
     """A row a method."""
-    width = None if own.lower_limit is None or own.upper_limit is None else own.upper_limit - own.lower_limit
-    return declared_table("", [(words, IntervalRow(own.unit, width, *ends)) for words, *ends in intervals_of(own)])
+    width = (
+        None
+        if measure_methods.lower_limit is None or measure_methods.upper_limit is None
+        else measure_methods.upper_limit - measure_methods.lower_limit
+    )
+    return declared_table(
+        "", [(words, IntervalRow(measure_methods.unit, width, *ends)) for words, *ends in intervals_of(measure_methods)]
+    )
 
 
-def intervals_of(own: MeasureMethods) -> Iterator[tuple[str, float | None, float | None]]:
+def intervals_of(measure_methods: MeasureMethods) -> Iterator[tuple[str, float | None, float | None]]:
     """Each method with its low and its high estimate, in the measure's unit; None for one that is not known."""
-    if own.worst is not None:
-        low, high = own.worst.low, own.worst.high
+    if measure_methods.worst is not None:
+        low, high = measure_methods.worst.low, measure_methods.worst.high
         yield "worst found", None if low is None else low.measured, None if high is None else high.measured
-    for words, half in (("worst by slopes", own.by_slopes), ("modified RSS", own.modified_rss), ("RSS", own.rss)):
-        known = None if own.mean is None or half is None else (own.mean - half, own.mean + half)
+    for words, half in (
+        ("worst by slopes", measure_methods.by_slopes),
+        ("modified RSS", measure_methods.modified_rss),
+        ("RSS", measure_methods.rss),
+    ):
+        known = (
+            None
+            if measure_methods.mean is None or half is None
+            else (measure_methods.mean - half, measure_methods.mean + half)
+        )
         yield words, *(known or (None, None))
-    sample = own.simulation
+    sample = measure_methods.simulation
     yield "simulation, ±3 sigma", sample.low_3sigma, sample.high_3sigma
     yield "simulation, 0.135 % and 99.865 %", sample.p0_135, sample.p99_865
     if sample.law is not None:
@@ -98,28 +112,30 @@ def intervals_of(own: MeasureMethods) -> Iterator[tuple[str, float | None, float
     yield "least and largest trial", sample.sample_min, sample.sample_max
 
 
-def _limits(own: MeasureMethods) -> str:
+def _limits(measure_methods: MeasureMethods) -> str:
     given = [
-        f"{sign} {limit_text(limit, own.unit)}"
-        for sign, limit in (("≥", own.lower_limit), ("≤", own.upper_limit))
+        f"{sign} {limit_text(limit, measure_methods.unit)}"
+        for sign, limit in (("≥", measure_methods.lower_limit), ("≤", measure_methods.upper_limit))
         if limit is not None
     ]
     return ", ".join(given) or "no limits"
 
 
-def _told(own: MeasureMethods) -> Iterator[PageItem]:
-    sample, law = own.simulation, own.simulation.law
-    count = f"{own.contributors} contributor{'s' if own.contributors != 1 else ''} with a slope"
-    factor = f"C_f {own.factor:.3f}" if own.factor is not None else "no C_f of fewer than two"
-    by_slopes = own.nothing_acts or (f"{count}, {factor}" if own.by_slopes is not None else NO_SLOPE)
-    yield note(f"mean build {measured_text(own.mean, own.unit)}; {by_slopes}")
+def _told(measure_methods: MeasureMethods) -> Iterator[PageItem]:
+    sample, law = measure_methods.simulation, measure_methods.simulation.law
+    count = f"{measure_methods.contributors} contributor{'s' if measure_methods.contributors != 1 else ''} with a slope"
+    factor = f"C_f {measure_methods.factor:.3f}" if measure_methods.factor is not None else "no C_f of fewer than two"
+    by_slopes = measure_methods.nothing_acts or (
+        f"{count}, {factor}" if measure_methods.by_slopes is not None else NO_SLOPE
+    )
+    yield note(f"mean build {measured_text(measure_methods.mean, measure_methods.unit)}; {by_slopes}")
     shape = [
         f"{word} {NOTHING if value is None else f'{value:.3f}'}"
         for word, value in (("skewness", sample.skewness), ("excess kurtosis", sample.kurtosis))
     ]
     failed = f", {sample.failed} failed" if sample.failed else ""
-    words = f"{sample.trials} trials{failed}: mean {measured_text(sample.mean, own.unit)}, "
-    words += f"sigma {measured_text(sample.sigma, own.unit)}, {', '.join(shape)}"
+    words = f"{sample.trials} trials{failed}: mean {measured_text(sample.mean, measure_methods.unit)}, "
+    words += f"sigma {measured_text(sample.sigma, measure_methods.unit)}, {', '.join(shape)}"
     yield note(words)
     if law is not None:
         parameters = ", ".join(f"{name} {number_text(float(f'{value:.5g}'))}" for name, value in law.parameters.items())
@@ -129,33 +145,40 @@ def _told(own: MeasureMethods) -> Iterator[PageItem]:
     if sample.beyond_worst:
         few = f"{sample.beyond_worst} of {sample.trials} trials"
         yield warning(f"{few} lie beyond the worst found: laws without limits of their own draw beyond ±3 sigma")
-    if own.worst is None and not own.nothing_acts:
-        yield note("worst case: not looked for" + (", it would take too many builds" if own.contributors else ""))
-    elif own.worst is not None and own.worst.unseated is not None:
-        status = own.worst.unseated.status
-        yield warning(
-            f"builds within the tolerances cannot be assembled ({status}); {own.worst.met} were met in the search"
+    if measure_methods.worst is None and not measure_methods.nothing_acts:
+        yield note(
+            "worst case: not looked for" + (", it would take too many builds" if measure_methods.contributors else "")
         )
+    elif measure_methods.worst is not None and measure_methods.worst.unseated is not None:
+        status = measure_methods.worst.unseated.status
+        met = measure_methods.worst.met
+        yield warning(f"builds within the tolerances cannot be assembled ({status}); {met} were met in the search")
 
 
 REJECTED: Final = 0.05
 
 
-def _builds(own: MeasureMethods, contributors: Sequence[Contributor]) -> Iterator[PageItem]:
+def _builds(measure_methods: MeasureMethods, contributors: Sequence[Contributor]) -> Iterator[PageItem]:
     """The deviations of the worst builds, those that differ first."""
-    assert own.worst is not None
-    builds = {word: build for word, build in (("lowest", own.worst.low), ("highest", own.worst.high)) if build}
-    if own.worst.unseated is not None and own.worst.unseated.measured is None:
-        builds["cannot be assembled"] = own.worst.unseated
+    assert measure_methods.worst is not None
+    builds = {
+        word: build
+        for word, build in (("lowest", measure_methods.worst.low), ("highest", measure_methods.worst.high))
+        if build
+    }
+    if measure_methods.worst.unseated is not None and measure_methods.worst.unseated.measured is None:
+        builds["cannot be assembled"] = measure_methods.worst.unseated
     if not builds:
         return
     rows = []
-    for each in contributors:
-        if any(each.name in build.deviations for build in builds.values()):
-            deviations = {f"{word}: {build.status}": _deviations(build, each.name) for word, build in builds.items()}
-            rows.append((each.name, DeviationRow(deviations, UNIT_SIGNS[each.unit])))
+    for contributor in contributors:
+        if any(contributor.name in build.deviations for build in builds.values()):
+            deviations = {
+                f"{word}: {build.status}": _deviations(build, contributor.name) for word, build in builds.items()
+            }
+            rows.append((contributor.name, DeviationRow(deviations, UNIT_SIGNS[contributor.unit])))
     yield declared_table("worst found", rows).shortened(MOST_SHOWN)
-    yield note(f"by {own.worst.evaluations} builds")
+    yield note(f"by {measure_methods.worst.evaluations} builds")
 
 
 def _deviations(build: BuildFound, name: str) -> str:
@@ -186,20 +209,24 @@ def methods_charts(found: Methods) -> Charts:
     return Charts(rows, found.scene, WIDTH * len(rows[0]))
 
 
-def methods_chart(name: str, own: MeasureMethods) -> Chart:
+def methods_chart(name: str, measure_methods: MeasureMethods) -> Chart:
     """A row for each method with its interval; dotted the mean build."""
-    intervals = [*intervals_of(own)]
+    intervals = [*intervals_of(measure_methods)]
     rows = [
         Range(row, low, high, None, ROLES.get(words, "series-3"), words)
         for row, (words, low, high) in enumerate(intervals)
     ]
-    limits = [(word, end) for word, end in (("LSL", own.lower_limit), ("USL", own.upper_limit)) if end is not None]
-    marks = [Mark(limit, "limit", label=f"{word} {limit_text(limit, own.unit)}") for word, limit in limits]
-    marks += [Mark(own.mean, "guide", label="mean build")] if own.mean is not None else []
+    limits = [
+        (word, end)
+        for word, end in (("LSL", measure_methods.lower_limit), ("USL", measure_methods.upper_limit))
+        if end is not None
+    ]
+    marks = [Mark(limit, "limit", label=f"{word} {limit_text(limit, measure_methods.unit)}") for word, limit in limits]
+    marks += [Mark(measure_methods.mean, "guide", label="mean build")] if measure_methods.mean is not None else []
     ends = [end for _, low, high in intervals for end in (low, high) if end is not None]
-    across = spanned(name, np.array([*ends, *(mark.value for mark in marks)]), own.unit)
+    across = spanned(name, np.array([*ends, *(mark.value for mark in marks)]), measure_methods.unit)
     table = [
-        (words, f"{short_text(low, own.unit)} to {short_text(high, own.unit)}")
+        (words, f"{short_text(low, measure_methods.unit)} to {short_text(high, measure_methods.unit)}")
         for words, low, high in intervals
         if low is not None and high is not None
     ]
@@ -208,12 +235,16 @@ def methods_chart(name: str, own: MeasureMethods) -> Chart:
     return Chart(f"{name} by methods", across, [panel], name, said, table)
 
 
-def _used(own: MeasureMethods) -> float:
+def _used(measure_methods: MeasureMethods) -> float:
     """3 sigma of the simulation over the distance to the nearest limit; 0 without limits."""
-    low, high, mean = own.simulation.low_3sigma, own.simulation.high_3sigma, own.simulation.mean
+    low, high, mean = (
+        measure_methods.simulation.low_3sigma,
+        measure_methods.simulation.high_3sigma,
+        measure_methods.simulation.mean,
+    )
     if low is None or high is None or mean is None:
         return 0.0
     half = (high - low) / 2
-    margins = [] if own.lower_limit is None else [mean - own.lower_limit]
-    margins += [] if own.upper_limit is None else [own.upper_limit - mean]
+    margins = [] if measure_methods.lower_limit is None else [mean - measure_methods.lower_limit]
+    margins += [] if measure_methods.upper_limit is None else [measure_methods.upper_limit - mean]
     return max((half / margin if margin > 0.0 else float("inf") for margin in margins), default=0.0)

@@ -39,8 +39,8 @@ def rare_report(found: RareEvents) -> Page:
     table = declared_table("", [(own.measure, own) for own in found.limits])
     blocks: list[PageItem] = [Line(((found.scene, "bold"), (" · fraction out of limits", ""))), BLANK, table]
     blocks += [note(words) for words in _notes(found.limits)]
-    for own in found.limits:
-        blocks += [warning(f"{own.measure}, {own.words}: {words}") for words in own.warnings]
+    for limit in found.limits:
+        blocks += [warning(f"{limit.measure}, {limit.words}: {words}") for words in limit.warnings]
     for own in found.limits:
         if own.design_point is not None:
             blocks += _design_point(own, own.design_point)
@@ -49,14 +49,15 @@ def rare_report(found: RareEvents) -> Page:
 
 def _notes(limits: Sequence[LimitLeft]) -> Iterator[str]:
     methods = dict.fromkeys(own.method for own in limits)
-    yield f"ppm: by {', '.join(METHOD_WORDS[own] for own in methods)}; builds that cannot be assembled count as out"
+    words = ", ".join(METHOD_WORDS[method] for method in methods)
+    yield f"ppm: by {words}; builds that cannot be assembled count as out"
     yield SUBSET_WORDS if set(methods) == {"subset"} else BETA_WORDS
     if any(own.second_order_ppm is not None for own in limits):
         yield "second order: with the curvatures of the limit, by Hohenbichler and Rackwitz"
-    for own in limits:
-        if own.unseated_percent > 0.0:
-            share = f"{own.unseated_percent:.1f} % of the failing builds"
-            yield f"{own.measure}, {own.words}: {share} cannot be assembled"
+    for limit in limits:
+        if limit.unseated_percent > 0.0:
+            share = f"{limit.unseated_percent:.1f} % of the failing builds"
+            yield f"{limit.measure}, {limit.words}: {share} cannot be assembled"
 
 
 @dataclass(frozen=True)
@@ -68,16 +69,17 @@ class DesignRow:
     share: Annotated[float, Shows("share of the distance [%]", ".1f")]
 
 
-def _design_point(own: LimitLeft, build: DesignBuild) -> Sequence[PageItem]:
+def _design_point(limit_left: LimitLeft, build: DesignBuild) -> Sequence[PageItem]:
     """Deviations of the contributors that lead there, the largest parts first."""
     rows = []
-    for each in build.contributors[:MOST_SHOWN]:
-        told = ", ".join(number_text(round(value, 3) + 0.0) for value in each.deviations)
-        unit = "µm" if each.unit == "um" else each.unit
-        rows.append((each.name, DesignRow(told, unit, each.percent)))
-    side = "below" if own.side == "low" else "above"
+    for contributor in build.contributors[:MOST_SHOWN]:
+        told = ", ".join(number_text(round(value, 3) + 0.0) for value in contributor.deviations)
+        unit = "µm" if contributor.unit == "um" else contributor.unit
+        rows.append((contributor.name, DesignRow(told, unit, contributor.percent)))
+    side = "below" if limit_left.side == "low" else "above"
     kind = "within" if build.beta < 0.0 else side
-    title = f"{own.measure}: the most likely build {kind} its {'lower' if own.side == 'low' else 'upper'} limit"
+    end = "lower" if limit_left.side == "low" else "upper"
+    title = f"{limit_left.measure}: the most likely build {kind} its {end} limit"
     at = ", ".join(f"{name} {number_text(round(value, 2))}" for name, value in build.positions.items())
     return [*titled(title, declared_table("", rows)), *([note(at)] if at else [])]
 
@@ -120,21 +122,21 @@ def limits_chart(limits: Sequence[LimitLeft]) -> Chart:
         (10.0 ** np.floor(np.log10(min(values))), 10.0 ** np.ceil(np.log10(max(values)))) if values else (1e-3, 1e6)
     )
     across = Axis("builds beyond the limit", low, max(high, 10 * low), "ppm", log=True)
-    names = Names([f"{own.measure} {own.words}" for own in limits])
+    names = Names([f"{limit.measure} {limit.words}" for limit in limits])
     table = [(name, f"{ppm_text(own.ppm)} ppm") for name, own in zip(names.names, limits, strict=True)]
     instead = "" if series else "nothing is known of these limits"
     return Chart("fractions beyond limits", across, [Panel(names, series)], "", "", table, instead)
 
 
-def design_point_chart(own: LimitLeft) -> Chart:
+def design_point_chart(limit_left: LimitLeft) -> Chart:
     """Contributors to the most likely build beyond a limit, the largest first."""
-    assert own.design_point is not None
-    every = own.design_point.contributors
+    assert limit_left.design_point is not None
+    every = limit_left.design_point.contributors
     shown, rest = every[:MOST_BARS], every[MOST_BARS:]
     percents = [each.percent for each in shown] + ([sum(each.percent for each in rest)] if rest else [])
     names = [each.name for each in shown] + ([f"{len(rest)} other{'s' if len(rest) > 1 else ''}"] if rest else [])
     texts = [f"{percent:.1f}" for percent in percents]
     across = Axis("share of the distance to the design point", 0.0, max(percents, default=1.0) or 1.0, "%")
-    title = f"{own.measure} {own.words}, β {own.design_point.beta:.2f}"
+    title = f"{limit_left.measure} {limit_left.words}, β {limit_left.design_point.beta:.2f}"
     panel = Panel(Names(names), [Lengths(percents, texts, "series-0")])
     return Chart(f"design point of {title}", across, [panel], title, "", [*zip(names, texts, strict=True)])

@@ -37,7 +37,7 @@ def what_if_report(name: str, found: WhatIf) -> Page:
         found: what they do.
     """
     head = Line(((name, "bold"), (" · what if", "")))
-    changes = declared_table("", ((own.contributor, own) for own in found.changes))
+    changes = declared_table("", ((change.contributor, change) for change in found.changes))
     answers = [_answer(measure, own) for measure, own in found.measures.items()]
     blocks: list[PageItem] = [head, BLANK, *answers, BLANK, *titled("tolerances", changes)]
     for measure, own in found.measures.items():
@@ -54,18 +54,22 @@ def what_if_report(name: str, found: WhatIf) -> Page:
     return page(*blocks, note(counted))
 
 
-def _answer(name: str, own: MeasureWhatIf) -> Line:
+def _answer(name: str, measure_what_if: MeasureWhatIf) -> Line:
     """Sigma and the fraction out of limits, before and after: by simulation, without one by rates."""
-    before, after = (_first(each.sigma, each.sigma_by_rates) for each in (own.before, own.after))
+    before, after = (
+        _first(each.sigma, each.sigma_by_rates) for each in (measure_what_if.before, measure_what_if.after)
+    )
     if before is None or after is None:
         return Line(((name, "bold"), (": known only by simulation", "")))
-    told = [f"sigma {_named(before, own.unit)} → {_named(after, own.unit)}{_percent(before, after)}"]
-    if own.before.limits:
-        told.append(f"out of limits {_out(own.before)} → {_out(own.after)}")
-    if own.before.ppk is not None and own.after.ppk is not None:
-        told.append(f"Ppk {own.before.ppk:.2f} → {own.after.ppk:.2f}")
-    if own.before.verdict and own.after.verdict:
-        told.append(f"{own.before.verdict} → {own.after.verdict}")
+    told = [
+        f"sigma {_named(before, measure_what_if.unit)} → {_named(after, measure_what_if.unit)}{_percent(before, after)}"
+    ]
+    if measure_what_if.before.limits:
+        told.append(f"out of limits {_out(measure_what_if.before)} → {_out(measure_what_if.after)}")
+    if measure_what_if.before.ppk is not None and measure_what_if.after.ppk is not None:
+        told.append(f"Ppk {measure_what_if.before.ppk:.2f} → {measure_what_if.after.ppk:.2f}")
+    if measure_what_if.before.verdict and measure_what_if.after.verdict:
+        told.append(f"{measure_what_if.before.verdict} → {measure_what_if.after.verdict}")
     return Line(((name, "bold"), (f": {'; '.join(told)}", "")))
 
 
@@ -81,23 +85,27 @@ def _percent(before: float, after: float) -> str:
     return f" ({100 * (after / before - 1):+.0f} %)" if before else ""
 
 
-def _out(own: StateNumbers) -> str:
+def _out(state_numbers: StateNumbers) -> str:
     """Fraction beyond all limits; with those beyond which none was found at the bound that this leaves."""
-    ppm = [_first(each.ppm, each.first_order) for each in own.limits.values()]
+    ppm = [_first(limit.ppm, limit.first_order) for limit in state_numbers.limits.values()]
     known = [each for each in ppm if each is not None]
     if len(known) < len(ppm):
         return NOTHING
-    below = sum(each.below for each in own.limits.values() if each.below is not None)
+    below = sum(limit.below for limit in state_numbers.limits.values() if limit.below is not None)
     total = share_text(sum(known))
     if not below:
         return total
     return f"{total} (+ < {share_text(below)})" if sum(known) else f"none found, < {share_text(below)}"
 
 
-def _unseen(name: str, own: MeasureWhatIf) -> Iterator[str]:
+def _unseen(name: str, measure_what_if: MeasureWhatIf) -> Iterator[str]:
     """Sentences on limits beyond which no build was found, with their distances by slopes."""
-    for side, limit in (("low", own.lower_limit), ("high", own.upper_limit)):
-        states = {word: state for word, state in (("before", own.before), ("after", own.after)) if limit is not None}
+    for side, limit in (("low", measure_what_if.lower_limit), ("high", measure_what_if.upper_limit)):
+        states = {
+            word: state
+            for word, state in (("before", measure_what_if.before), ("after", measure_what_if.after))
+            if limit is not None
+        }
         unseen = {word: state for word, state in states.items() if state.limits[side].below is not None}
         if not unseen or limit is None:
             continue
@@ -122,12 +130,12 @@ class BeforeAfter:
     change: Annotated[str, Shows("change")]
 
 
-def what_if_table(own: MeasureWhatIf) -> Table:
+def what_if_table(measure_what_if: MeasureWhatIf) -> Table:
     """Table of one measure."""
-    unit = own.unit
+    unit = measure_what_if.unit
     rows: list[tuple[str, BeforeAfter]] = []
     for name, shows in shown_by(StateNumbers).items():
-        before, after = getattr(own.before, name), getattr(own.after, name)
+        before, after = getattr(measure_what_if.before, name), getattr(measure_what_if.after, name)
         if (before, after) != (None, None):
             cells = [formed(value, shows.form, unit) for value in (before, after)]
             if isinstance(before, float) and isinstance(after, float):
@@ -135,14 +143,21 @@ def what_if_table(own: MeasureWhatIf) -> Table:
             else:
                 cells.append(NOTHING if None in (before, after) else "")
             rows.append((shows.heading, BeforeAfter(*cells)))
-    if own.before.failed or own.after.failed:
+    if measure_what_if.before.failed or measure_what_if.after.failed:
         rows.append(
-            ("builds that fail", BeforeAfter(formed(own.before.failed, "d"), formed(own.after.failed, "d"), ""))
+            (
+                "builds that fail",
+                BeforeAfter(formed(measure_what_if.before.failed, "d"), formed(measure_what_if.after.failed, "d"), ""),
+            )
         )
-    for side, limit in (("low", own.lower_limit), ("high", own.upper_limit)):
+    for side, limit in (("low", measure_what_if.lower_limit), ("high", measure_what_if.upper_limit)):
         if limit is not None:
             sign = "<" if side == "low" else ">"
-            rows += _limit(f"{sign} {limit_text(limit, unit)}", own.before.limits[side], own.after.limits[side])
+            rows += _limit(
+                f"{sign} {limit_text(limit, unit)}",
+                measure_what_if.before.limits[side],
+                measure_what_if.after.limits[side],
+            )
     return declared_table("", rows)
 
 
@@ -162,14 +177,14 @@ def _span(interval: Sequence[float] | None) -> str:
     return NOTHING if interval is None else f"{ppm_text(interval[0])} … {ppm_text(interval[1])}"
 
 
-def _bounded(own: LimitNumbers) -> Shown:
+def _bounded(limit_numbers: LimitNumbers) -> Shown:
     """Fraction by sampling; the bound where nothing beyond the limit was found."""
-    return _ppm(own.ppm) if own.below is None else Shown(f"< {ppm_text(own.below)}", None)
+    return _ppm(limit_numbers.ppm) if limit_numbers.below is None else Shown(f"< {ppm_text(limit_numbers.below)}", None)
 
 
-def bounded_text(own: LimitNumbers) -> str:
+def bounded_text(limit_numbers: LimitNumbers) -> str:
     """The same with its unit."""
-    return share_text(own.ppm) if own.below is None else f"< {share_text(own.below)}"
+    return share_text(limit_numbers.ppm) if limit_numbers.below is None else f"< {share_text(limit_numbers.below)}"
 
 
 def _ppm(value: float | None) -> Shown:
@@ -186,28 +201,28 @@ MOST: Final = 8
 
 def what_if_charts(name: str, found: WhatIf) -> Charts:
     """The distributions before and after."""
-    words = "; ".join(f"{own.contributor}: {own.before} → {own.after}" for own in found.changes)
+    words = "; ".join(f"{change.contributor}: {change.before} → {change.after}" for change in found.changes)
     shown = list(found.measures.items())[:MOST]
     rows = [[what_if_chart(measure, own, found.trials)] for measure, own in shown]
     return Charts(rows, f"{name} · what if {words}")
 
 
-def what_if_chart(name: str, own: MeasureWhatIf, trials: int) -> Chart:
+def what_if_chart(name: str, measure_what_if: MeasureWhatIf, trials: int) -> Chart:
     """Outlines of a measure's histograms before and after."""
-    edges, series, table = np.array(own.edges, dtype=np.float64), [], []
+    edges, series, table = np.array(measure_what_if.edges, dtype=np.float64), [], []
     roles: dict[str, Role] = {"before": "series-0", "after": "series-1"}
-    for (word, role), state in zip(roles.items(), (own.before, own.after), strict=True):
+    for (word, role), state in zip(roles.items(), (measure_what_if.before, measure_what_if.after), strict=True):
         ppm = ", ".join(f"{bounded_text(limit)} {side}" for side, limit in state.limits.items())
         percent = 100.0 * np.array(state.counts) / max(trials, 1)
         series.append(Outline(edges, percent, role, f"{word}{': ' if ppm else ''}{ppm}"))
         table.append((word, ppm))
     y = Axis("% of trials", 0.0, 1.05 * max(float(each.heights.max()) for each in series) or 1.0)
-    marks = [*_limits(own)]
-    across = spanned(name, np.array([edges[0], edges[-1], *(mark.value for mark in marks)]), own.unit)
+    marks = [*_limits(measure_what_if)]
+    across = spanned(name, np.array([edges[0], edges[-1], *(mark.value for mark in marks)]), measure_what_if.unit)
     return Chart(f"{name} before and after", across, [Panel(y, series, marks, 0.7)], name, table=table)
 
 
-def _limits(own: MeasureWhatIf) -> Iterator[Mark]:
-    for word, limit in (("LSL", own.lower_limit), ("USL", own.upper_limit)):
+def _limits(measure_what_if: MeasureWhatIf) -> Iterator[Mark]:
+    for word, limit in (("LSL", measure_what_if.lower_limit), ("USL", measure_what_if.upper_limit)):
         if limit is not None:
-            yield Mark(limit, "limit", (f"{word} {limit_text(limit, own.unit)}",), upper=word == "USL")
+            yield Mark(limit, "limit", (f"{word} {limit_text(limit, measure_what_if.unit)}",), upper=word == "USL")

@@ -189,9 +189,9 @@ def methods(
     activity("trials")
     own_trials = trials or Drawn.of(response, min(response.simulation.study.trials, MOST_TRIALS))
     found = {}
-    for own in response.measures:
-        activity(own.name)
-        found[own.name] = _of_measure(response.of(own.name), own, own_trials)
+    for measure in response.measures:
+        activity(measure.name)
+        found[measure.name] = _of_measure(response.of(measure.name), measure, own_trials)
     return made(
         Methods,
         scene=response.simulation.system.name,
@@ -201,18 +201,18 @@ def methods(
     )
 
 
-def _of_measure(response: Response, own: Measure, trials: Trials) -> MeasureMethods:
+def _of_measure(response: Response, measure: Measure, trials: Trials) -> MeasureMethods:
     before = response.evaluations
-    source = response.curves.get(own.name, own)
+    source = response.curves.get(measure.name, measure)
     system = response.simulation.system
-    space = space_of(system, source, response.draws, response.acting(own))
+    space = space_of(system, source, response.draws, response.acting(measure))
     built = _built(response)
     at_rest = response.positions(1, "rest")
     mean = space.mean[None]
     value, _ = built(mean, at_rest)
     slopes = gradient_of(space, built, mean, at_rest, value, SIGMA)[0]
     halves = _half_tolerances(space, slopes)
-    column = trials.column(own.name)
+    column = trials.column(measure.name)
     worst = _worst(response, source, space, built, trials, column)
     total = float(np.sum(halves))
     square = float(np.sum(halves**2)) + _together(response, space, slopes)
@@ -221,9 +221,9 @@ def _of_measure(response: Response, own: Measure, trials: Trials) -> MeasureMeth
     sloping = total > 0.0 or not len(space.acting)
     return made(
         MeasureMethods,
-        unit=cast(Unit, own.unit),
-        lower_limit=None if own.lower_limit is None else own.lower_limit * own.per_internal,
-        upper_limit=None if own.upper_limit is None else own.upper_limit * own.per_internal,
+        unit=cast(Unit, measure.unit),
+        lower_limit=None if measure.lower_limit is None else measure.lower_limit * measure.per_internal,
+        upper_limit=None if measure.upper_limit is None else measure.upper_limit * measure.per_internal,
         mean=_known(value[0]),
         contributors=count,
         by_slopes=total if sloping else None,
@@ -231,7 +231,7 @@ def _of_measure(response: Response, own: Measure, trials: Trials) -> MeasureMeth
         factor=factor,
         modified_rss=None if factor is None else factor * rss,
         worst=None if worst is None else _worst_found(response, space, worst),
-        nothing_acts=response.nothing_acts(own),
+        nothing_acts=response.nothing_acts(measure),
         simulation=_sample(column, worst),
         evaluations=response.evaluations - before,
     )
@@ -259,15 +259,15 @@ def _built(response: Response) -> Built:
 def _half_tolerances(space: Space, slopes: Array) -> Array:
     """Half tolerances of each active contributor, and of each of its features drawn separately (parts,)."""
     found = [np.zeros(0)]
-    for own in space.drawings:
-        if own.acts and slopes[own.columns].any():
-            found.append(region_of(own.draw, turning=own.turning).halves(slopes[own.columns]))
+    for drawing in space.drawings:
+        if drawing.acts and slopes[drawing.columns].any():
+            found.append(region_of(drawing.draw, turning=drawing.turning).halves(slopes[drawing.columns]))
     return np.concatenate(found)
 
 
 def _together(response: Response, space: Space, slopes: Array) -> float:
     """The part of correlated contributors in the sum of squares, which may be below 0; each is one number."""
-    drawn, total = {own.name: own for own in space.drawings if own.acts}, 0.0
+    drawn, total = {drawing.name: drawing for drawing in space.drawings if drawing.acts}, 0.0
     for block in response.copula.blocks:
         signed = np.zeros(len(block.names))
         for k, name in enumerate(block.names):
@@ -300,7 +300,7 @@ def _worst(
         drawn = response.positions(PLACES, "drawn")
         starts.append(Starts.both_ways(builds_in(space, np.repeat(space.mean[None], PLACES, axis=0)), drawn))
     starts.append(Starts.both_ways(random_ends(space, RANDOM, seed=1), repeated(at_rest, RANDOM)))
-    taken = list(accumulate(len(own.signs) for own in starts))
+    taken = list(accumulate(len(start.signs) for start in starts))
     afforded = [own for own, count in zip(starts, taken, strict=True) if count <= max(rows, FEWEST)]
     return worst_case(space, built, joined(afforded), most=int(builds)).with_builds(within)
 

@@ -139,7 +139,7 @@ def levers_of(response: Response, slopes: Array, steadiness: Array) -> list[Leve
         response: whose contributors.
         slopes, steadiness: of the measure (components,), see `Rates`.
     """
-    found, known = [], {own.name: own for own in response.contributors}
+    found, known = [], {contributor.name: contributor for contributor in response.contributors}
     for line, names in response.lines.items():
         own, columns = known[names[0]], np.concatenate([_columns(response, name) for name in names])
         if own.unit == "1" or not all(_has_nominal(known[name], response.draws[name]) for name in names):
@@ -199,7 +199,13 @@ def _at(response: Response, row: Array, positions: Mapping[str, Array], count: i
 
 def _second(response: Response, mean: Array, built: Array, positions: Mapping[str, Array], rows: int) -> Array:
     """Half the curvature times the variance of each component (measures, components), over one sigma to both sides."""
-    sigmas = np.array([own for each in response.contributors for own in component_sigmas(response.draws[each.name])])
+    sigmas = np.array(
+        [
+            component_sigma
+            for contributor in response.contributors
+            for component_sigma in component_sigmas(response.draws[contributor.name])
+        ]
+    )
     acting = np.flatnonzero(sigmas > 0.0)
     found = np.zeros((len(response.measures), response.components))
     many = max(1, AT_ONCE // max(2 * rows * response.components, 1))

@@ -87,15 +87,15 @@ def changed(response: Response, changes: Sequence[Change]) -> Response:
     factors: dict[str, float] = {}
     laws: dict[str, Distribution] = {}
     widths: dict[str, float] = {}
-    for own in changes:
-        for name in response.lines[known(response, own.name, own.name)]:
+    for change in changes:
+        for name in response.lines[known(response, change.name, change.name)]:
             draw = response.drawn_by(name)
-            if own.factor is not None:
-                factors[name] = own.factor
-            elif own.size is not None and isinstance(draw, Zoned):
-                widths[name] = own.size
+            if change.factor is not None:
+                factors[name] = change.factor
+            elif change.size is not None and isinstance(draw, Zoned):
+                widths[name] = change.size
             else:
-                laws[name] = _law(draw, own)
+                laws[name] = _law(draw, change)
     return response.scaled(factors).sized(widths).with_laws(laws)
 
 
@@ -105,11 +105,11 @@ MANY_TIMES: Final = 100.0
 
 def slips(before: Response, after: Response) -> Iterator[str]:
     """Warnings of tolerances that become so much wider that a unit is most likely wrong."""
-    for own in before.contributors:
-        sigmas = [max(component_sigmas(one.draws[own.name])) for one in (before, after)]
+    for contributor in before.contributors:
+        sigmas = [max(component_sigmas(one.draws[contributor.name])) for one in (before, after)]
         if sigmas[1] > MANY_TIMES * sigmas[0] > 0.0:
             times = f"{sigmas[1] / sigmas[0]:.3g} times as wide as in the scene"
-            yield f"{own.name}: {told(own, after.draws[own.name])} is {times}; check the unit"
+            yield f"{contributor.name}: {told(contributor, after.draws[contributor.name])} is {times}; check the unit"
 
 
 def _law(draw: Draw, change: Change) -> Distribution:

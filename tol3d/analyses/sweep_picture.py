@@ -55,10 +55,10 @@ def over_field(found: Sweep, name: str, field: int) -> Chart:
         gaps = np.full(len(at), np.nan)
         upright = Line(np.repeat(at, 3), np.stack([low, high, gaps], axis=-1).ravel(), "soft", stroke="thin")
         series = [upright, Points(at, mean, "series-0")]
-    first = next(own.measures[name] for own in found.variants if name in own.measures)
+    first = next(variant.measures[name] for variant in found.variants if name in variant.measures)
     limits = [limit for limit in (first.lower_limit, first.upper_limit) if limit is not None]
     marks = [Mark(limit, "limit", upright=False) for limit in limits]
-    lost = [own.numbers[field] for own in found.variants if name not in own.measures]
+    lost = [variant.numbers[field] for variant in found.variants if name not in variant.measures]
     marks += [Mark(place, "guide", label="could not be built") for place in lost if len(found.fields) == 1]
     across = spanned(short_names(found.fields)[field], np.array([*at, *lost]), found.units[field])
     y = spanned(name, np.concatenate([mean, low, high, limits]), first.unit)
@@ -68,7 +68,7 @@ def over_field(found: Sweep, name: str, field: int) -> Chart:
 
 def _numbers(found: Sweep, name: str) -> tuple[Array, Array, Array, Array, Array]:
     """Numbers of the fields (variants, fields), then mean, low, high and share out of limits of each."""
-    built = [own for own in found.variants if name in own.measures]
+    built = [variant for variant in found.variants if name in variant.measures]
     numbers = np.array([own.numbers for own in built]).reshape(len(built), len(found.fields))
     keys = ("mean", "low", "high", "out_ppm")
     columns = [np.array([own.measures[name].value(key) for own in built], dtype=np.float64) for key in keys]
@@ -77,21 +77,21 @@ def _numbers(found: Sweep, name: str) -> tuple[Array, Array, Array, Array, Array
 
 def _is_grid(found: Sweep, name: str) -> bool:
     """True where two fields have each number of one with each of the other."""
-    across, up = (np.unique([own.numbers[k] for own in found.variants]) for k in range(2))
+    across, up = (np.unique([variant.numbers[k] for variant in found.variants]) for k in range(2))
     return len(across) * len(up) == len(found.variants) and len(across) > 1 and len(up) > 1
 
 
 def over_both(found: Sweep, name: str) -> Chart:
     """A measure over the numbers of two fields: share out of limits, Ppk where none is, mean without limits."""
     numbers, mean, _, _, out = _numbers(found, name)
-    built = [own.measures[name] for own in found.variants if name in own.measures]
+    built = [variant.measures[name] for variant in found.variants if name in variant.measures]
     unit = UNIT_SIGNS.get(built[0].unit, built[0].unit)
     values, words = mean, f"mean of {name} [{unit}]"
     if any((own.lower_limit, own.upper_limit) != (None, None) for own in built):
         values, words = out / 1e4, f"{name}: out of limits [%]"
         if not np.nanmax(out, initial=0.0) > 0.0:
             values, words = np.array([own.ppk for own in built], dtype=np.float64), f"{name}: Ppk"
-    places = [np.unique([own.numbers[k] for own in found.variants]) for k in range(2)]
+    places = [np.unique([variant.numbers[k] for variant in found.variants]) for k in range(2)]
     grid = np.full((len(places[1]), len(places[0])), np.nan)
     grid[np.searchsorted(places[1], numbers[:, 1]), np.searchsorted(places[0], numbers[:, 0])] = values
     field = Field(places[0], places[1], grid, words)

@@ -72,15 +72,15 @@ def short_names(fields: Sequence[str]) -> list[str]:
 
 
 def _of_measure(found: Sweep, name: str) -> Table:
-    built = [own for own in found.variants if name in own.measures]
+    built = [variant for variant in found.variants if name in variant.measures]
     unit = built[0].measures[name].unit
     heads = [*_headings(found), *NUMBERS]
     rows = [Row(str(k + 1), [*_values(own), *_cells(own.measures.get(name))]) for k, own in enumerate(found.variants)]
     return Table(f"variant [{_sign(unit)}]", heads, rows, repeated=len(found.fields))
 
 
-def _values(own: Variant) -> list[Shown]:
-    return [Shown(f"{number:g}", number) for number in own.numbers]
+def _values(variant: Variant) -> list[Shown]:
+    return [Shown(f"{number:g}", number) for number in variant.numbers]
 
 
 def _cells(own: VariantMeasure | None) -> Sequence[Shown | str]:
@@ -107,7 +107,7 @@ def _not_built(found: Sweep) -> Iterator[PageItem]:
 def whole_table(found: Sweep) -> Table:
     """A row a variant: its numbers, those of every measure, and why it could not be built."""
     names = measures_of(found)
-    units = {name: own.unit for each in found.variants for name, own in each.measures.items()}
+    units = {name: own.unit for variant in found.variants for name, own in variant.measures.items()}
     heads = [f"{field} [{unit}]" if unit else field for field, unit in zip(found.fields, found.units, strict=True)]
     for name in names:
         shown = ((own.heading, {"value": units[name], "share": "ppm"}.get(own.form)) for own in COLUMNS)

@@ -163,15 +163,15 @@ def effects(
         seed=seed,
         positions=("input" if position else "averaged") if system.streams else "none",
         evaluations=response.evaluations - before,
-        measures={own.name: found[own.name] for own in response.measures},
+        measures={measure.name: found[measure.name] for measure in response.measures},
     )
 
 
 def _alike(response: Response) -> Sequence[Sequence[Measure]]:
     """Measures by the positions of a trial: sweeps take longer, and get fewer pairs."""
     groups: dict[int, list[Measure]] = {}
-    for own in response.measures:
-        groups.setdefault(own.positions.in_a_trial, []).append(own)
+    for measure in response.measures:
+        groups.setdefault(measure.positions.in_a_trial, []).append(measure)
     return list(groups.values())
 
 
@@ -198,8 +198,8 @@ def _averaged(response: Response, seed: int) -> tuple[Array, Array]:
 def _slopes(response: Response, gradient: Array) -> Array:
     """Change per unit (measures, contributors) of a gradient (measures, components)."""
     found = []
-    for own in response.contributors:
-        part = gradient[:, response.slices[own.name]] * own.per_unit
+    for contributor in response.contributors:
+        part = gradient[:, response.slices[contributor.name]] * contributor.per_unit
         found.append(part[:, 0] if part.shape[1] == 1 else np.sqrt((part * part).sum(axis=1)))
     return np.array(found).reshape(len(found), len(gradient)).T
 

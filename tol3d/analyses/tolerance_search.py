@@ -188,10 +188,10 @@ def begun(
     known = question.groups or response.lines
     grouped = {own: name for name, each in known.items() for own in each}
     groups: dict[str, tuple[str, ...]] = {}
-    for own in response.contributors:
-        if own.name in asked:
-            name = grouped.get(own.name, own.name)
-            groups[name] = known.get(name, (own.name,))
+    for contributor in response.contributors:
+        if contributor.name in asked:
+            name = grouped.get(contributor.name, contributor.name)
+            groups[name] = known.get(name, (contributor.name,))
     for names, words in ((question.frozen, "--freeze"), (question.own_bounds, "--bound"), (question.stays, "--stays")):
         _refuse_strangers(names, response, question, words)
     free: dict[str, tuple[str, ...]] = {}
@@ -217,7 +217,7 @@ def begun(
     if not free:
         why = "; ".join(f"{name}: {words}" for name, (_, words) in held.items())
         measures = [response.of(own.measure).measures[0] for own in targets]
-        idle = (f"{own.name}: {words}" for own in measures if (words := response.nothing_acts(own)))
+        idle = (f"{measure.name}: {words}" for measure in measures if (words := response.nothing_acts(measure)))
         why = why or "; ".join(idle) or "none acts"
         raise InputError(f"expected contributors whose tolerances can be scaled, got none ({why})")
     search = Search(response, targets, question, free, np.array(low), np.array(high), {})
@@ -237,7 +237,7 @@ def _refuse_strangers(
     names: Mapping[str, object] | frozenset[str], response: Response, question: Question, option: str
 ) -> None:
     groups = question.groups or response.lines
-    known = {own.name for own in response.contributors} | set(groups)
+    known = {contributor.name for contributor in response.contributors} | set(groups)
     for name in names:
         for line, each in groups.items():
             if name in each and name not in groups and line not in names:

@@ -139,8 +139,8 @@ def sweep(scene: Scene, question: SweepQuestion, order: Order) -> Sweep:
     return made(
         Sweep,
         scene=scene.scene,
-        fields=[own.field for own in question.variables],
-        units=[own.unit for own in question.variables],
+        fields=[variable.field for variable in question.variables],
+        units=[variable.unit for variable in question.variables],
         trials=study.trials,
         seed=study.seed,
         variants=variants,
@@ -223,25 +223,29 @@ def _key(scene: Scene, study: object) -> str:
     return digest.hexdigest()[:12]
 
 
-def _found(own: MeasureSummary) -> VariantMeasure:
-    low, mean, high = ends_of(own)
-    sample = own.sample(own.best_method) if own.take != "curve" else None
+def _found(measure_summary: MeasureSummary) -> VariantMeasure:
+    low, mean, high = ends_of(measure_summary)
+    sample = measure_summary.sample(measure_summary.best_method) if measure_summary.take != "curve" else None
     return made(
         VariantMeasure,
-        unit=own.unit,
-        lower_limit=own.lower_limit,
-        upper_limit=own.upper_limit,
+        unit=measure_summary.unit,
+        lower_limit=measure_summary.lower_limit,
+        upper_limit=measure_summary.upper_limit,
         mean=mean,
         sigma=sample.sigma if sample is not None else None,
         low=low,
         high=high,
-        out_ppm=own.shares.out_ppm if own.has_limits or own.shares.out_ppm else None,
-        out_ppm_95=own.shares.out_ppm_95 if own.has_limits or own.shares.out_ppm else None,
-        ppk=own.shares.ppk,
-        failed=own.trials - own.status.get(SEATED, own.trials),
+        out_ppm=measure_summary.shares.out_ppm
+        if measure_summary.has_limits or measure_summary.shares.out_ppm
+        else None,
+        out_ppm_95=measure_summary.shares.out_ppm_95
+        if measure_summary.has_limits or measure_summary.shares.out_ppm
+        else None,
+        ppk=measure_summary.shares.ppk,
+        failed=measure_summary.trials - measure_summary.status.get(SEATED, measure_summary.trials),
     )
 
 
 def measures_of(found: Sweep) -> Sequence[str]:
     """Names of all measures of all variants."""
-    return list(dict.fromkeys(name for own in found.variants for name in own.measures))
+    return list(dict.fromkeys(name for variant in found.variants for name in variant.measures))

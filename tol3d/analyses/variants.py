@@ -186,12 +186,12 @@ def _alike(field: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
     return tuple(found)
 
 
-def _in_unit(own: Quantity, unit: str) -> Quantity:
-    if own.unit == unit:
-        return own
-    table = FACTORS[own.dimension]
+def _in_unit(quantity: Quantity, unit: str) -> Quantity:
+    if quantity.unit == unit:
+        return quantity
+    table = FACTORS[quantity.dimension]
     return Quantity(
-        float(Decimal(repr(own.number)) * Decimal(repr(table[own.unit])) / Decimal(repr(table[unit]))), unit
+        float(Decimal(repr(quantity.number)) * Decimal(repr(table[quantity.unit])) / Decimal(repr(table[unit]))), unit
     )
 
 

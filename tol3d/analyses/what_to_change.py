@@ -339,7 +339,7 @@ class _Asked:
         mean, error = self.mean_and_error
         singles = [*self.moves(), *self.halves()]
         tried = len(singles)
-        found = [own for each in singles if each is not None and (own := self.proposal(*each)) is not None]
+        found = [own for single in singles if single is not None and (own := self.proposal(*single)) is not None]
         if more := self.together(found):
             tried, found = tried + 1, [*found, more]
         found.sort(key=lambda own: _worth(own[1].after))
@@ -530,8 +530,8 @@ class _Asked:
         """Other measures, with limits and without, each with builds as they are."""
         found = []
         for limits in (True, False):
-            others = [own for own in self.whole.measures if own.name != self.measure.name]
-            if names := [own.name for own in others if (limits_of(own) != (None, None)) == limits]:
+            others = [measure for measure in self.whole.measures if measure.name != self.measure.name]
+            if names := [other.name for other in others if (limits_of(other) != (None, None)) == limits]:
                 response, count = self.whole.of(*names), len(self.deviations)
                 share = 1.0 if limits else self.response.minutes / max(response.minutes, self.response.minutes, TINY)
                 found.append((response, self.built(response, self.deviations[: max(int(share * count), BESIDE)])))
@@ -539,7 +539,10 @@ class _Asked:
 
     def steps(self, change: _Change) -> Iterator[Step]:
         """A change, line by line."""
-        known, draws = {own.name: own for own in self.response.contributors}, change.made(self.response).draws
+        known, draws = (
+            {contributor.name: contributor for contributor in self.response.contributors},
+            change.made(self.response).draws,
+        )
         for line in (*change.moved, *change.halved):
             first, *others = self.response.lines[line]
             own, moved = known[first], line in change.moved
@@ -565,8 +568,8 @@ def _worth(after: Spread) -> tuple[float, float]:
     return after.out_ppm or 0.0, -(after.ppk or 0.0)
 
 
-def _is_seen(own: Beside) -> bool:
+def _is_seen(beside: Beside) -> bool:
     """True if the mean or the Ppk of another measure changes by what a reader should see."""
-    now, after = own.now, own.after
+    now, after = beside.now, beside.after
     moved = abs((after.mean or 0.0) - (now.mean or 0.0)) > SEEN * (now.sigma or 0.0)
-    return moved or (own.has_limits and abs((after.ppk or 0.0) - (now.ppk or 0.0)) > SEEN)
+    return moved or (beside.has_limits and abs((after.ppk or 0.0) - (now.ppk or 0.0)) > SEEN)

@@ -71,14 +71,14 @@ def misses(assembly: Assembly) -> Iterator[Miss]:
                 yield Miss(move.name, k, own, amount, (float(at[0]), float(at[1]), float(at[2])))
 
 
-def _missing(own: Relation, moving: Feature, target: Feature, pose: Array, its: Array) -> tuple[float, Array]:
+def _missing(relation: Relation, moving: Feature, target: Feature, pose: Array, its: Array) -> tuple[float, Array]:
     """The largest distance of a feature's ends from their places by a relation, and that end (3,) [mm]."""
     ends = moving.shape.ends @ pose[:3, :3].T + pose[:3, 3]
     normal, off = its[:3, 2], ends - its[:3, 3]
     surfaces, sign = (moving.shape.surface, target.shape.surface), float(np.sign(pose[:3, 2] @ normal))
     if surfaces[1] == "point":
         missing = np.linalg.norm(off, axis=1)
-    elif own.kind == "coincident" and (seat := cone_seat(moving.shape, target.shape, sign)):
+    elif relation.kind == "coincident" and (seat := cone_seat(moving.shape, target.shape, sign)):
         missing = np.linalg.norm(off - np.outer(seat.height + sign * moving.shape.ends[:, 2], normal), axis=1)
     elif surfaces[1] != "plane" and surfaces[0] != "plane":
         missing = np.linalg.norm(off - np.outer(off @ normal, normal), axis=1)
@@ -86,7 +86,7 @@ def _missing(own: Relation, moving: Feature, target: Feature, pose: Array, its: 
         ends = target.shape.ends @ its[:3, :3].T + its[:3, 3]
         missing = np.abs((ends - pose[:3, 3]) @ pose[:3, 2] - (target.shape.nominal_size or 0.0) / 2)
     else:
-        asked = (moving.shape.nominal_size or 0.0) / 2 if own.kind == "tangent" else own.distance
+        asked = (moving.shape.nominal_size or 0.0) / 2 if relation.kind == "tangent" else relation.distance
         missing = np.abs(off @ normal - asked)
     worst = int(np.argmax(missing))
     return float(missing[worst]), ends[worst]

@@ -29,8 +29,8 @@ def widely(contributors: Sequence[Contributor]) -> Array:
     """Deviations (trials, columns) like those of trials and twice as wide, the same in every process [mm, K]."""
     rng = np.random.default_rng(0)
     columns = []
-    for own in contributors:
-        mean, covariance = moments_of(own)
+    for contributor in contributors:
+        mean, covariance = moments_of(contributor)
         sizes, axes = np.linalg.eigh(covariance)
         normal = rng.normal(size=(MOTIONS, len(mean))) * np.sqrt(np.maximum(sizes, 0.0))
         normal[::2] *= 2.0

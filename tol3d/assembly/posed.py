@@ -152,7 +152,7 @@ class PosedSystem(AssemblySystem):
     @kept
     def _acting_on(self, name: str) -> Sequence[Contributor]:
         names = {own.name for pose in self.at[name] for own in self.poses[pose]._acting_on(name)}
-        return [own for own in self.contributors if own.name in names]
+        return [contributor for contributor in self.contributors if contributor.name in names]
 
     def regressor_key(self, measure: Measure) -> Hashable:
         """See System."""
@@ -164,7 +164,7 @@ class PosedSystem(AssemblySystem):
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
         """See System: over a path as in the first of its poses in which a contributor acts."""
-        waiting = {own.name: own for own in contributors}
+        waiting = {contributor.name: contributor for contributor in contributors}
         for pose in self.at[measure.name]:
             if not waiting:
                 return
@@ -197,7 +197,7 @@ class PosedMethod:
     @property
     def chord_error(self) -> float:
         """See Method."""
-        return max(own.chord_error for own in self.methods.values())
+        return max(method.chord_error for method in self.methods.values())
 
     def reads(self, measure: Measure) -> bool:
         """See WitnessMethod."""
@@ -270,7 +270,7 @@ def system_of(scene: Scene) -> AssemblySystem:
 
 
 def _measure(scene: Scene, name: str, system: AssemblySystem, count: int) -> PlainMeasure:
-    own = next(each for each in system.measures if each.name == name)
+    own = next(measure for measure in system.measures if measure.name == name)
     spec = scene.measures[name]
     if not isinstance(spec, TimedSpec) or spec.over is None:
         return own

@@ -152,16 +152,16 @@ class AssemblySystem(PlainSystem):
     ) -> None:
         """Each component of a zone over its own sigma, squared where the measure takes its size; others as ever."""
         others, squared, slices = [], self.squared(self.slopes_of(measure.name)), component_slices(self)
-        for own in contributors:
-            draw = own.draw
-            if not isinstance(draw, ZoneDraw) or len(draw.components) == 1 or is_group(own):
-                others.append(own)
+        for contributor in contributors:
+            draw = contributor.draw
+            if not isinstance(draw, ZoneDraw) or len(draw.components) == 1 or is_group(contributor):
+                others.append(contributor)
                 continue
-            places = range(*slices[own.name].indices(self.assembly.width))
+            places = range(*slices[contributor.name].indices(self.assembly.width))
             for row, name, mean, sigma, place in zip(
-                rows[own.name], own.columns, draw.mean_vector, draw.sigmas, places, strict=True
+                rows[contributor.name], contributor.columns, draw.mean_vector, draw.sigmas, places, strict=True
             ):
-                np.multiply(np.asarray(columns[name], dtype=np.float64), own.per_unit / (sigma or 1.0), out=row)
+                np.multiply(np.asarray(columns[name], dtype=np.float64), contributor.per_unit / (sigma or 1.0), out=row)
                 if place in squared:
                     np.subtract(row, mean / (sigma or 1.0), out=row)
                     np.square(row, out=row)
@@ -193,7 +193,7 @@ class AssemblySystem(PlainSystem):
         """
         if torsors.is_bent(self.assembly, measure.name):
             return False
-        if not any(isinstance(own.draw, EnvelopedForm) for own in self.contributors):
+        if not any(isinstance(contributor.draw, EnvelopedForm) for contributor in self.contributors):
             return True
         return not any(isinstance(own.draw, EnvelopedForm) for own in self.acting(measure))
 
@@ -205,7 +205,7 @@ class AssemblySystem(PlainSystem):
     @cached_property
     def _moments(self) -> tuple[Array, Array]:
         """Means and sigmas of all components (columns,) [mm, K]."""
-        moments = [moments_of(own) for own in self.contributors]
+        moments = [moments_of(contributor) for contributor in self.contributors]
         means = np.concatenate([mean for mean, _ in moments] or [np.zeros(0)])
         return means, np.concatenate([np.sqrt(np.diagonal(covariance)) for _, covariance in moments] or [np.zeros(0)])
 
@@ -286,7 +286,9 @@ def assembly_system(scene: Scene, pose: str = "", meaning: Understood | None = N
         placed.second_order,
     )  # fmt: skip
     _asked(scene, lambda: at_rest(assembly).linear)
-    measures = _asked(scene, lambda: tuple(replace(own, adds_up=made.is_linear(own)) for own in made.measures))
+    measures = _asked(
+        scene, lambda: tuple(replace(measure, adds_up=made.is_linear(measure)) for measure in made.measures)
+    )
     return replace(made, measures=measures)
 
 

@@ -131,7 +131,7 @@ def _over(pair: tuple[Feature, Feature], line: Array, plane: Array) -> Surface:
     shape, flat = (own.shape for own in pair)
     (half,) = shape.reach
     places = (own @ plane[:3, :2] for own in (line[:3, 3] - plane[:3, 3], half * line[:3, 2]))
-    low, high = over(flat, *(own[:, None] for own in places))
+    low, high = over(flat, *(place[:, None] for place in places))
     return _segment(half * float(low[0]), half * float(high[0]))
 
 

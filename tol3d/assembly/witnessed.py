@@ -16,7 +16,7 @@ def reads(assembly: Assembly, name: str) -> bool:
     if measured.kind != "surface_gap":
         return False
     features = [assembly.features[feature] for feature in measured.features]
-    return not any(own.shape.inner for own in features) and not _face_with_their_ends(assembly, *features)
+    return not any(feature.shape.inner for feature in features) and not _face_with_their_ends(assembly, *features)
 
 
 def _face_with_their_ends(assembly: Assembly, start: Feature, end: Feature) -> bool:

@@ -109,7 +109,7 @@ def _broken_pipes() -> Iterator[None]:
             if sys.stdout is not None:
                 sys.stdout.flush()
     except (BrokenPipeError, SystemExit) as ended:
-        if not any(isinstance(each, BrokenPipeError) for each in _causes(ended)):  # typer ends with 1 of one
+        if not any(isinstance(cause, BrokenPipeError) for cause in _causes(ended)):  # typer ends with 1 of one
             raise
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for stream in (sys.stdout, sys.stderr):  # what is left in them would be refused again as Python ends
@@ -129,7 +129,7 @@ def _print_fault(words: str, whom: str, error: BaseException) -> None:
 
 def _out_of_memory(error: Exception) -> str:
     """Message where the system gives no more memory; empty for other errors."""
-    lacking = next((each for each in _causes(error) if _wants_memory(each)), None)
+    lacking = next((cause for cause in _causes(error) if _wants_memory(cause)), None)
     if lacking is None and not _has_filled_its_room():
         return ""
     why = " ".join(str(lacking or error).split())

@@ -9,8 +9,8 @@ from typing import Final
 import numpy as np
 
 from tol3d.gearing.shafts import Mesh
+from tol3d.gears.flank import Flank
 from tol3d.gears.tooth_measures import ToothMeasure
-from tol3d.gears.toothed_gear import Flank
 from tol3d.numerics.arrays import Array
 
 

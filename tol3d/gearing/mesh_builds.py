@@ -84,7 +84,7 @@ class MeshBuild:
         """
         count = range(0, len(driver_angle), POSITIONS_AT_ONCE)
         pieces = [driver_angle[first : first + POSITIONS_AT_ONCE] for first in count]
-        read = [self._engine.rests(self._made, self.mesh, READING, own)[side == "back"] for own in pieces]
+        read = [self._engine.rests(self._made, self.mesh, READING, piece)[side == "back"] for piece in pieces]
         status = np.concatenate([own.status.ravel() for own in read]) if read else np.zeros(0, np.int8)
         turned = np.concatenate([own.driven_angle.ravel() for own in read]) if read else np.zeros(0)
         return Rests(turned, {int(k): STATUS_TEXT[int(status[k])] for k in np.flatnonzero(status != OK)})
@@ -179,4 +179,6 @@ def _gears_of(system: System) -> Model:
 
 def _mean(system: System) -> Trials:
     """One trial, every contributor at its mean; random directions have none."""
-    return Trials(np.array([[mean for own in system.contributors for mean in own.draw.mean(turning=False)]]), {})
+    return Trials(
+        np.array([[mean for contributor in system.contributors for mean in contributor.draw.mean(turning=False)]]), {}
+    )

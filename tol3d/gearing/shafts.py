@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from tol3d.gears import Flank, Gear, GearPair
-from tol3d.gears.toothed_gear import opposite
+from tol3d.gears.flank import opposite
 
 
 @dataclass(frozen=True)

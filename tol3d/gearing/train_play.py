@@ -26,7 +26,7 @@ from tol3d.gearing.summary.train_sections import train_sections
 from tol3d.gearing.summary.types import Ends
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.gears import Flank
-from tol3d.gears.toothed_gear import opposite
+from tol3d.gears.flank import opposite
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.study.results.task import materials_of, method_of
@@ -102,7 +102,7 @@ class TrainPlay:
     def is_drawn(self, stage: AnyStage) -> bool:
         """True if the play of a stage is drawn; of a reducer without a law only the maximum is known."""
         contributors = self.model.contributors
-        return stage.backlash is not None or any(own.effect.acts_on(stage.link) for own in contributors)
+        return stage.backlash is not None or any(contributor.effect.acts_on(stage.link) for contributor in contributors)
 
     def motor_turns(self, stage: AnyStage) -> float:
         """Turns of the motor for a turn of the shaft that a stage drives."""
@@ -176,7 +176,9 @@ class TrainPlay:
         Of publications those that have all meshes of the train. The closed form is there if all stages have one.
         """
         model = self.model
-        of_meshes = [own for own in model.measures if isinstance(own.kind, Backlash)]  # what others published of them
+        of_meshes = [
+            measure for measure in model.measures if isinstance(measure.kind, Backlash)
+        ]  # what others published of them
         known_of = replace(model, measures=(self.measure, *of_meshes))
         breakdowns = breakdowns_of(replace(model, measures=(self.measure,)))
         pooled = pooled_terms(breakdowns, STATUSES, {name: own[:, -1] for name, own in played.columns.items()})
@@ -350,7 +352,7 @@ def gears_alone(simulation: Simulation) -> Simulation:
 def shafts_in_bores(system: System) -> tuple[tuple[str, str], ...]:
     """Moves that lay a machine's shafts in bores, and these shafts."""
     bores: Any = getattr(system, "bores", None)
-    return () if bores is None else tuple((own.move, own.shaft) for own in bores.shafts)
+    return () if bores is None else tuple((shaft.move, shaft.shaft) for shaft in bores.shafts)
 
 
 def _kind(model: Model, train: Train, quantity: str) -> LostMotion | None:

@@ -7,6 +7,7 @@ of teeth (`tooth_measures`) and classes of flanks (`iso1328`) beside them. No sc
 
 from tol3d.gears.bevel_gear import BevelGear, pitch_angles
 from tol3d.gears.bevel_pair import BevelPair
+from tol3d.gears.flank import LEFT, RIGHT, Flank, opposite
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_pair import InternalPair
 from tol3d.gears.involute import inverse_involute, involute
@@ -14,7 +15,6 @@ from tol3d.gears.pair import Displaced, Gear, GearPair, driver_teeth_at_one_toot
 from tol3d.gears.spherical_involute import inverse_spherical_involute, spherical_involute
 from tol3d.gears.spur_gear import SpurGear
 from tol3d.gears.spur_pair import SpurPair
-from tol3d.gears.toothed_gear import LEFT, RIGHT, Flank, opposite
 from tol3d.gears.undercut import RACK_ADDENDUM
 
 __all__ = [

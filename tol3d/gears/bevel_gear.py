@@ -13,6 +13,7 @@ from functools import cached_property
 from typing import ClassVar, Final
 
 from tol3d.errors import GeometryError
+from tol3d.gears.flank import Flank
 from tol3d.gears.spherical_involute import (
     flank_directions,
     flank_normals,
@@ -20,7 +21,7 @@ from tol3d.gears.spherical_involute import (
     inverse_spherical_involute,
     spherical_involute,
 )
-from tol3d.gears.toothed_gear import PRESSURE_ANGLES, Flank, ToothedGear
+from tol3d.gears.toothed_gear import PRESSURE_ANGLES, ToothedGear
 from tol3d.gears.undercut import RACK_ADDENDUM, crown_rack_undercut_angle
 from tol3d.numerics.arrays import Array
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.gears.bevel_gear import BevelGear, pitch_angles
+from tol3d.gears.flank import Flank
 from tol3d.gears.pair import CONTACT_MARGIN, Displaced, RollingPair
-from tol3d.gears.toothed_gear import Flank
 from tol3d.numerics.arrays import Array
 
 SAME_ANGLE = 1e-9  # rad; over 100 mm a ten-thousandth of a micrometre

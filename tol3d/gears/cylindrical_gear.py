@@ -12,8 +12,9 @@ from typing import Final
 import numpy as np
 
 from tol3d.errors import GeometryError
+from tol3d.gears.flank import Flank
 from tol3d.gears.involute import involute
-from tol3d.gears.toothed_gear import Flank, ToothedGear
+from tol3d.gears.toothed_gear import ToothedGear
 from tol3d.numerics.arrays import Array
 
 ISO53_ROOT_FILLET: Final = 0.38  # of the module; fillet of the standard basic rack, ISO 53:1998, profile A

@@ -13,10 +13,10 @@ from typing import Final
 import numpy as np
 
 from tol3d.gears.cylindrical_gear import CylindricalGear
+from tol3d.gears.flank import RIGHT
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.involute import involute
 from tol3d.gears.spur_gear import SpurGear
-from tol3d.gears.toothed_gear import RIGHT
 from tol3d.numerics.arrays import Array
 
 

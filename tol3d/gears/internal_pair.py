@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_pair import CylindricalPair
+from tol3d.gears.flank import Flank, opposite
 from tol3d.gears.internal_assembly import interference, interferes, radially_assembled
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_mesh import InternalMesh
 from tol3d.gears.pair import CONTACT_MARGIN, Displaced
 from tol3d.gears.spur_gear import SpurGear
-from tol3d.gears.toothed_gear import Flank, opposite
 from tol3d.numerics.arrays import Array
 
 

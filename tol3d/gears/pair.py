@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
-from tol3d.gears.toothed_gear import LEFT, RIGHT, Flank, ToothedGear
+from tol3d.gears.flank import LEFT, RIGHT, Flank
+from tol3d.gears.toothed_gear import ToothedGear
 from tol3d.numerics.arrays import Array
 
 Teeth = NDArray[np.int64]

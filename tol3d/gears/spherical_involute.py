@@ -14,7 +14,7 @@ lines through the apex, and its normal, which stays in the rolling plane, is the
 
 import numpy as np
 
-from tol3d.gears.toothed_gear import Flank
+from tol3d.gears.flank import Flank
 from tol3d.numerics.arrays import Array
 
 Angles = float | Array

@@ -7,8 +7,9 @@ from typing import ClassVar
 
 from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_gear import CylindricalGear
+from tol3d.gears.flank import Flank
 from tol3d.gears.involute import involute
-from tol3d.gears.toothed_gear import PRESSURE_ANGLES, Flank, ToothedGear
+from tol3d.gears.toothed_gear import PRESSURE_ANGLES, ToothedGear
 from tol3d.gears.undercut import RACK_ADDENDUM, rack_undercut_radius
 
 

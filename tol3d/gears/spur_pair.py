@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_pair import CylindricalPair
+from tol3d.gears.flank import Flank
 from tol3d.gears.pair import Displaced
 from tol3d.gears.spur_gear import SpurGear
-from tol3d.gears.toothed_gear import Flank
 from tol3d.numerics.arrays import Array
 
 

@@ -1,12 +1,9 @@
-"""Common base of spur and bevel gears: refused sizes, reference circle, flanks that deviate.
-
-Side of a tooth: the sign sigma that every formula of tol3d shares.
-"""
+"""Common base of spur and bevel gears: refused sizes, reference circle, flanks that deviate."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar, Final, Literal, Self
+from typing import ClassVar, Final, Self
 
 from tol3d.errors import GeometryError
 
@@ -67,19 +64,3 @@ class ToothedGear:
         lengths = {name: getattr(self, name) for name in self.lengths}
         grown = {name: length * scale for name, length in lengths.items() if length is not None}
         return replace(self, **grown | {"tooth_thickness_deviation": thicker * scale})
-
-
-Flank = Literal[1, -1]
-"""sigma: +1 the right flank, on the low-azimuth side of its tooth; -1 the left flank."""
-
-RIGHT: Final[Flank] = 1
-LEFT: Final[Flank] = -1
-
-
-def opposite(flank: Flank) -> Flank:
-    """The other flank of the tooth.
-
-    >>> opposite(RIGHT) == LEFT
-    True
-    """
-    return LEFT if flank == RIGHT else RIGHT

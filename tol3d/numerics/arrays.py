@@ -31,12 +31,12 @@ class TrialArrays:
 
     def __getitem__(self, trials: Any) -> Self:
         """Values of some trials."""
-        return type(self)(*(getattr(self, own.name)[trials] for own in fields(self)))  # type: ignore[arg-type]
+        return type(self)(*(getattr(self, field.name)[trials] for field in fields(self)))  # type: ignore[arg-type]
 
     def __setitem__(self, trials: Any, part: Self) -> None:
         """Write those of some trials."""
-        for own in fields(self):  # type: ignore[arg-type]
-            getattr(self, own.name)[trials] = getattr(part, own.name)
+        for field in fields(self):  # type: ignore[arg-type]
+            getattr(self, field.name)[trials] = getattr(part, field.name)
 
     def plus(self, other: Self, factor: float = 1.0) -> Self:
         """Both added up, the other one times a factor."""
@@ -58,8 +58,8 @@ class TrialArrays:
     def _each(self, made: Callable[..., Array], *others: Self) -> Self:
         """The same of every array, and of those at the same place of others."""
         found = []
-        for own in fields(self):  # type: ignore[arg-type]
-            values = [getattr(each, own.name) for each in (self, *others)]
+        for field in fields(self):  # type: ignore[arg-type]
+            values = [getattr(each, field.name) for each in (self, *others)]
             nested = isinstance(values[0], TrialArrays)
             found.append(values[0]._each(made, *values[1:]) if nested else made(*values))
         return type(self)(*found)

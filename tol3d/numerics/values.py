@@ -41,7 +41,7 @@ class Valued:
 def _names(kind: type) -> tuple[bytes, tuple[str, ...]]:
     """A dataclass, told from others of its name, and the names of the fields by which it is compared."""
     name = f"{kind.__module__}:{kind.__qualname__}:{id(kind)}"
-    return name.encode(), tuple(own.name for own in fields(kind) if own.compare)
+    return name.encode(), tuple(field.name for field in fields(kind) if field.compare)
 
 
 def _fields(value: Any) -> Iterator[bytes]:

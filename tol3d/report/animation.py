@@ -101,7 +101,7 @@ def encoded(motion: Motion, drawn: Iterator[Image.Image], suffix: str) -> bytes:
         ".webp": {"format": "WEBP", "quality": 80, "method": 4},
     }[suffix]
     stream = io.BytesIO()
-    first.save(stream, save_all=True, append_images=others, duration=[round(own) for own in lasts], loop=0, **options)
+    first.save(stream, save_all=True, append_images=others, duration=[round(last) for last in lasts], loop=0, **options)
     return stream.getvalue()
 
 

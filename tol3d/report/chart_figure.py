@@ -81,7 +81,7 @@ def _words_widths(row: Sequence[Chart], width: float, shares: Sequence[float]) -
     labels = [names_of(panel) for chart in row for panel in chart.panels]
     alone = [chart for chart in row if len(row) == 1 and _legend_beside(chart, width)]
     legend = [[*_legend(chart, 0.0).values()] for chart in alone]
-    taken = BESIDE + BETWEEN_CHARTS * (len(row) - 1) + sum(widest(own, NAME_SIZE) for own in labels)
+    taken = BESIDE + BETWEEN_CHARTS * (len(row) - 1) + sum(widest(label, NAME_SIZE) for label in labels)
     taken += sum(widest(own, LEGEND_SIZE) + LEGEND_MARK for own in legend)
     return [max((width - taken) * share / sum(shares), 2.0) for share in shares]
 
@@ -90,7 +90,7 @@ def _legend(chart: Chart, room: float) -> dict[str, str]:
     """Words of the legend in lines, by labels; none where rows below name the colours."""
     kinds = {isinstance(panel.y, Names) for panel in chart.panels}
     labels = [label for label, _ in chart.labelled()] if len(kinds) == 1 else []
-    return {own: wrapped(own, max(LEGEND_WIDTH, room - LEGEND_MARK), LEGEND_SIZE, NAME_LINES) for own in labels}
+    return {label: wrapped(label, max(LEGEND_WIDTH, room - LEGEND_MARK), LEGEND_SIZE, NAME_LINES) for label in labels}
 
 
 def _legend_beside(chart: Chart, width: float) -> bool:
@@ -100,8 +100,8 @@ def _legend_beside(chart: Chart, width: float) -> bool:
 def _named(axes: Sequence[Axes]) -> dict[str, Artist]:
     """Artists of a legend by their labels, the first of each."""
     named: dict[str, Artist] = {}
-    for own in axes:
-        for handle, label in zip(*own.get_legend_handles_labels(), strict=True):
+    for axis in axes:
+        for handle, label in zip(*axis.get_legend_handles_labels(), strict=True):
             named.setdefault(label, handle)
     return named
 
@@ -162,7 +162,7 @@ def charts_figure(
     most = len(ratios) if shared else max(map(len, rows))
     columns = ratios if len(ratios) == most else [1.0] * most
     shares = [columns if len(row) == most or shared else [1.0] * len(row) for row in rows]
-    widths = [[width * own / sum(each) for own in each] for each in shares]
+    widths = [[width * own / sum(share) for own in share] for share in shares]
     rooms = [_words_widths(row, width, own) for row, own in zip(rows, shares, strict=True)]
     heights = [max(map(chart_height, *own)) for own in zip(rows, widths, rooms, strict=True)]
     if len(rows) == 1 == len(rows[0]) and not rows[0][0].has_rows:

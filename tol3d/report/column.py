@@ -96,7 +96,7 @@ def shares_of(measure: MeasureSummary) -> list[Column]:
 def leading_shares(measure: MeasureSummary) -> Column | None:
     """The column whose shares are named first: the 3D simulation's, or the analytic one's."""
     columns = shares_of(measure)
-    return next((own for own in columns if own.method == "geometric"), columns[0] if columns else None)
+    return next((column for column in columns if column.method == "geometric"), columns[0] if columns else None)
 
 
 def unexplained_of(measure: MeasureSummary, column: Column) -> Unexplained | None:

@@ -36,17 +36,17 @@ def declared_table(corner: str, rows: Iterable[tuple[str | Row, Any]], unit: str
     """
     told = [(own if isinstance(own, Row) else Row(own, ()), of) for own, of in rows]
     columns = [*_columns([of for _, of in told])]
-    filled = [replace(row, cells=tuple(own.cell(of, unit) for own in columns)) for row, of in told]
-    return Table(corner, [own.heading(unit) for own in columns], filled)
+    filled = [replace(row, cells=tuple(column.cell(of, unit) for column in columns)) for row, of in told]
+    return Table(corner, [column.heading(unit) for column in columns], filled)
 
 
 def side_by_side(corner: str, columns: Iterable[tuple[str | Heading, Any]], unit: str = "") -> Table:
     """A column an object, a row a field that declares one; see `declared_table`."""
     told = [(own if isinstance(own, Heading) else Heading(own), of) for own, of in columns]
     rows = []
-    for own in _columns([of for _, of in told]):
-        heading = own.heading(unit)
-        rows.append(Row(heading.text, tuple(own.cell(of, unit) for _, of in told), heading.style))
+    for column in _columns([of for _, of in told]):
+        heading = column.heading(unit)
+        rows.append(Row(heading.text, tuple(column.cell(of, unit) for _, of in told), heading.style))
     return Table(corner, [heading for heading, _ in told], rows)
 
 
@@ -78,10 +78,12 @@ class _Column:
 def _columns(objects: list[Any]) -> Iterator[_Column]:
     for name, shows in {name: shows for own in objects for name, shows in columns_of(own).items()}.items():
         values = [getattr(own, name) for own in objects if name in columns_of(own)]
-        mappings = [own for own in values if isinstance(own, Mapping)]
+        mappings = [value for value in values if isinstance(value, Mapping)]
         if mappings:
-            yield from (_Column(name, shows, key) for key in dict.fromkeys(key for own in mappings for key in own))
-        elif not shows.seldom or any(own is not None for own in values):
+            yield from (
+                _Column(name, shows, key) for key in dict.fromkeys(key for mapping in mappings for key in mapping)
+            )
+        elif not shows.seldom or any(value is not None for value in values):
             yield _Column(name, shows)
 
 

@@ -194,22 +194,22 @@ def _draw_area(axes: Axes, own: Filled, colour: str, label: str | None) -> None:
     axes.stairs(own.heights, own.edges, color=colour, linewidth=1.0)
 
 
-def _draw_field(axes: Axes, own: Field) -> None:
-    norm: Any = LogNorm if own.log else Normalize
-    shown = np.ma.masked_invalid(own.values)
-    colours = FIELD_LOG if own.log else FIELD
-    image = axes.pcolormesh(own.edges(upright=False), own.edges(upright=True), shown, cmap=colours, norm=norm())
-    ticks: Any = {"ticks": LogLocator(subs=(1.0, 2.0, 5.0)), "format": "%g"} if own.log else {}
+def _draw_field(axes: Axes, field: Field) -> None:
+    norm: Any = LogNorm if field.log else Normalize
+    shown = np.ma.masked_invalid(field.values)
+    colours = FIELD_LOG if field.log else FIELD
+    image = axes.pcolormesh(field.edges(upright=False), field.edges(upright=True), shown, cmap=colours, norm=norm())
+    ticks: Any = {"ticks": LogLocator(subs=(1.0, 2.0, 5.0)), "format": "%g"} if field.log else {}
     figure: Any = axes.get_figure()
     bar = figure.colorbar(image, ax=axes, **ticks)
     bar.minorticks_off()
     bar.ax.tick_params(labelsize=8)
-    bar.set_label(_escaped(own.words), fontsize=9)
-    if own.written:
-        for (row, column), value in np.ndenumerate(own.values):
-            dark = np.isnan(value) or own.strength[row, column] > 0.5
+    bar.set_label(_escaped(field.words), fontsize=9)
+    if field.written:
+        for (row, column), value in np.ndenumerate(field.values):
+            dark = np.isnan(value) or field.strength[row, column] > 0.5
             text = NOTHING if np.isnan(value) else f"{value:.3g}"
-            place = float(own.x[column]), float(own.y[row])
+            place = float(field.x[column]), float(field.y[row])
             axes.text(*place, text, ha="center", va="center", fontsize=7.5, color=BLACK if dark else "white")
 
 
@@ -229,13 +229,13 @@ def _draw_range(axes: Axes, own: Range, colour: str, label: str | None) -> None:
         axes.annotate(_escaped(own.after), (1.01, own.row), xycoords=place, va="center", fontsize=8)
 
 
-def _draw_lengths(axes: Axes, own: Lengths, index: int, count: int) -> None:
+def _draw_lengths(axes: Axes, lengths: Lengths, index: int, count: int) -> None:
     height = 0.8 / count
-    places = np.arange(len(own.values)) - 0.4 + (index + 0.5) * height
-    colours = [COLOURS[role] for role in own.roles] or COLOURS[own.role]
-    values = [value or 0.0 for value in own.values]
-    drawn = axes.barh(places, values, height=0.9 * height, color=colours, alpha=0.8, label=own.label or None)
-    axes.bar_label(drawn, labels=list(own.texts), fontsize=7, padding=2, color=BLACK)
+    places = np.arange(len(lengths.values)) - 0.4 + (index + 0.5) * height
+    colours = [COLOURS[role] for role in lengths.roles] or COLOURS[lengths.role]
+    values = [value or 0.0 for value in lengths.values]
+    drawn = axes.barh(places, values, height=0.9 * height, color=colours, alpha=0.8, label=lengths.label or None)
+    axes.bar_label(drawn, labels=list(lengths.texts), fontsize=7, padding=2, color=BLACK)
 
 
 # marks --------------------------------------------------------------------------------------------
@@ -318,12 +318,12 @@ def panel_height(panel: Panel) -> float:
     return (max(LINE * lines, BAR * bars) + BETWEEN) * max(len(labels), FEWEST_ROWS)
 
 
-def draw_cells(axes: Axes, own: Cells) -> Artist:
+def draw_cells(axes: Axes, cells: Cells) -> Artist:
     """Draw a matrix as an image with its numbers; the image."""
-    colours = np.where(np.arange(len(own.values))[:, None] < own.coloured, own.values, 0.0)
+    colours = np.where(np.arange(len(cells.values))[:, None] < cells.coloured, cells.values, 0.0)
     most = max(float(np.nanmax(colours, initial=0.0)), LEAST_WRITTEN)
     image = axes.imshow(colours, aspect="auto", cmap="Blues", vmin=0.0, vmax=most)
-    for (row, column), share in np.ndenumerate(own.values):
+    for (row, column), share in np.ndenumerate(cells.values):
         if share >= LEAST_WRITTEN:
             colour = "white" if colours[row, column] > DARK * most else BLACK
             axes.text(column, row, f"{share:.0f}", ha="center", va="center", fontsize=CELL_SIZE, color=colour)

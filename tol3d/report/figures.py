@@ -148,7 +148,7 @@ def histogram_figure(summary: RunSummary) -> Figure:
     names, count = shown_measures(summary.measures, MOST_TOGETHER), len(summary.measures)
     measures = shown_run(of_measures(summary, names)).measures
     worst = f"   ·   the {len(names)} worst of {count} measures" if len(names) < count else ""
-    columns = [column for own in measures.values() if own.take != "curve" for column in columns_of(own)]
+    columns = [column for measure in measures.values() if measure.take != "curve" for column in columns_of(measure)]
     roles = column_roles(columns)
     rows = [
         [chart_of(name, own, roles), *([pareto(own, roles)] if own.take != "curve" and shares_of(own) else [])]
@@ -181,7 +181,7 @@ def _small(chart: Chart) -> Chart:
     assert isinstance(x, Axis)
     assert isinstance(panel.y, Axis)
     y = replace(panel.y, label="", ticks=bool(panel.y.unit))
-    marks = [replace(own, words=()) for own in panel.marks]
+    marks = [replace(mark, words=()) for mark in panel.marks]
     words = "; ".join(f"{word} {text}" for word, text in chart.table)
     seated = chart.words.partition(SEATED)[2]
     small = Panel(y, panel.series, marks, OVERVIEW_HEIGHT)

@@ -76,10 +76,10 @@ def correlation_blocks(run: RunSummary) -> list[PageItem]:
     return [title("correlation of measures", shown), _table(joint, run.best_method, beyond[:MOST_PAIRS]), note(words)]
 
 
-def _beyond_noise(own: Correlations) -> Iterator[Pair]:
+def _beyond_noise(correlations: Correlations) -> Iterator[Pair]:
     """The pairs of measures whose correlation is more than noise."""
-    for i, j in combinations(range(len(own.r)), 2):
-        r, count = own.r[i][j], own.trials[i][j]
+    for i, j in combinations(range(len(correlations.r)), 2):
+        r, count = correlations.r[i][j], correlations.trials[i][j]
         if r is not None and abs(r) > _noise(count):
             yield i, j
 

@@ -131,10 +131,10 @@ def leading_column(measure: MeasureSummary) -> Column:
     return next(column for column in columns_of(measure) if column.method == measure.best_method)
 
 
-def _published_bars(own: Section, trials: float | None) -> Bars:
+def _published_bars(section: Section, trials: float | None) -> Bars:
     """A published histogram, with its number of trials if stated."""
-    counts = np.asarray(own["counts"], dtype=np.float64)
-    edges = own["lower_edge"] + own["bin_width"] * np.arange(len(counts) + 1, dtype=np.float64)
+    counts = np.asarray(section["counts"], dtype=np.float64)
+    edges = section["lower_edge"] + section["bin_width"] * np.arange(len(counts) + 1, dtype=np.float64)
     return Bars(edges, counts, max(float(counts.sum()), trials or 0.0))
 
 
@@ -198,7 +198,9 @@ def column_roles(columns: Sequence[Column]) -> dict[str, Role]:
     """A role for each column by its heading: the methods have their own, published ones get the others in turn."""
     published = dict.fromkeys(column.heading for column in columns if column.method == "published")
     roles: dict[str, Role] = {name: PUBLISHED[k % len(PUBLISHED)] for k, name in enumerate(published)}
-    return roles | {own.heading: roles_of_method(own.method) for own in columns if own.method != "published"}
+    return roles | {
+        column.heading: roles_of_method(column.method) for column in columns if column.method != "published"
+    }
 
 
 def ranged(measure: MeasureSummary) -> list[Column]:

@@ -75,7 +75,7 @@ def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[Fu
     ]
     rows += [*_converted_rows(measure, columns), *_further_rows(further, columns, unit)]
     rows += published_rows(measure, columns, limits)
-    return Table(UNIT_HEADINGS[unit], [heading_by(own.method, own.heading) for own in columns], rows)
+    return Table(UNIT_HEADINGS[unit], [heading_by(column.method, column.heading) for column in columns], rows)
 
 
 def _build_cell(column: Column, key: str, build: Methods, unit: str) -> Shown:
@@ -92,8 +92,8 @@ def _failure_rows(run: RunSummary, measure: MeasureSummary, columns: Sequence[Co
     own = {"geometric": measure.status, "analytic": {SEATED: measure.trials}}
     counts = [its or own.get(column.method, {}) for its, column in zip(others, columns, strict=True)]
     for status in dict.fromkeys(status for each in (measure.status, *others) for status in each):
-        if measure.status.get(status) or status == SEATED or any(status in its for its in others):
-            cells = [str(each.get(status, 0)) if each else NOTHING for each in counts]
+        if measure.status.get(status) or status == SEATED or any(status in other for other in others):
+            cells = [str(count.get(status, 0)) if count else NOTHING for count in counts]
             yield Row(f"trials {run.state(status)}", cells)
 
 
@@ -156,7 +156,7 @@ def contributors_table(measure: MeasureSummary) -> Table:
     if left := not_attributed(measure):
         row = Row(NOT_ATTRIBUTED, [percent_cell(rest) for rest in left], "dim", unit="%")
         rows = [row, *rows] if measure.shares_by else [*rows, row]
-    return Table("share [%]", [heading_by(own.method, _share_heading(measure, own)) for own in shares], rows)
+    return Table("share [%]", [heading_by(share.method, _share_heading(measure, share)) for share in shares], rows)
 
 
 def _share_heading(measure: MeasureSummary, column: Column) -> str:

@@ -110,11 +110,11 @@ def stacked(tables: Mapping[str, Table]) -> "DataFrame":
     headings, rows = list[str](), list[dict[str, str | float | None]]()
     for title, table in tables.items():
         (corner, *heads), *lines = table.cells()
-        named = [str(corner) or LABEL, *(str(own) or REMARK for own in heads)]
+        named = [str(corner) or LABEL, *(str(head) or REMARK for head in heads)]
         first: dict[str, str | float | None] = {MEASURE: title} if title else {}
         headings += [own for own in (*first, *named) if own not in headings]
         rows += [first | {own: _cell(cell) for own, cell in zip(named, line, strict=True)} for line in lines]
-    return frame_of_rows(headings, [[row.get(own) for own in headings] for row in rows])
+    return frame_of_rows(headings, [[row.get(heading) for heading in headings] for row in rows])
 
 
 def _cell(cell: str | float) -> str | float | None:

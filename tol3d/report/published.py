@@ -60,10 +60,10 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Co
     """
     others = [column.values for column in columns if column.method == "published" and column.values is not None]
     for key, shows in STATISTICS.items():
-        if shows.given and key not in shown and any(own.get(key) is not None for own in others):
+        if shows.given and key not in shown and any(other.get(key) is not None for other in others):
             yield statistic_row(measure, columns, key)
     for name in dict.fromkeys(name for column in columns for name in _pooled(column)):
-        cells = [published_cell(own, _pooled(own).get(name), measure.unit) for own in columns]
+        cells = [published_cell(column, _pooled(column).get(name), measure.unit) for column in columns]
         yield Row(POOLED.get(name, name), cells, unit=measure.unit)
 
 
@@ -157,9 +157,11 @@ def published_blocks(run: RunSummary) -> list[PageItem]:
     places = list(dict.fromkeys(place for own in given.values() for place in own))
     if not places:
         return []
-    units = {place: unit for own in columns.values() for place, unit in _units(own, ())}
+    units = {place: unit for column in columns.values() for place, unit in _units(column, ())}
     methods: list[Method] = [*dict.fromkeys(("analytic", run.best_method))]
-    headings = [heading_by(own, HEADINGS[own]) for own in methods] + [heading_by("published", own) for own in given]
+    headings = [heading_by(method, HEADINGS[method]) for method in methods] + [
+        heading_by("published", own) for own in given
+    ]
     rows = []
     for place in places:
         unit = units.get(place, "")

@@ -44,13 +44,13 @@ def _table(measure: MeasureSummary, found: Mapping[Method, SpectrumSample]) -> T
     return Table(f"amplitude{unit} of order", [heading for heading, _ in columns], rows)
 
 
-def _values(own: SpectrumSample) -> Iterator[tuple[str, list[float | None]]]:
-    yield "mean", own.mean
-    yield "p50", own.p50
-    yield "p99.865", own.p99_865
+def _values(spectrum_sample: SpectrumSample) -> Iterator[tuple[str, list[float | None]]]:
+    yield "mean", spectrum_sample.mean
+    yield "p50", spectrum_sample.p50
+    yield "p99.865", spectrum_sample.p99_865
 
 
-def largest_orders(own: SpectrumSample) -> list[int]:
+def largest_orders(spectrum_sample: SpectrumSample) -> list[int]:
     """Which orders are printed: the largest by their means, in ascending order."""
-    by_size = sorted(range(len(own.order)), key=lambda k: -(own.mean[k] or 0.0))
+    by_size = sorted(range(len(spectrum_sample.order)), key=lambda k: -(spectrum_sample.mean[k] or 0.0))
     return sorted(by_size[:ORDER_ROWS])

@@ -65,7 +65,7 @@ def features_figure(file: StepFile) -> Figure:
 
 def _drawn(axes: Any, part: StepPart, corner: tuple[float, float]) -> None:
     mesh = part.mesh()
-    kinds = {number: own.kind for own in part.features if not own.loose for number in own.faces}
+    kinds = {number: feature.kind for feature in part.features if not feature.loose for number in feature.faces}
     kept = np.array([number in kinds for number in mesh.faces.tolist()])
     corners = mesh.vertices[mesh.triangles[kept]]
     colours = np.array([to_rgb(COLOURS[kinds[number]]) for number in mesh.faces[kept].tolist()])

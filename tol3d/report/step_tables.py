@@ -112,7 +112,7 @@ def features_report(file: StepFile) -> Page:
     if len(file.uses) > 1:
         blocks += [BLANK, *titled("parts as they stand in the file", _uses(file))]
     if file.layers:
-        named = ", ".join(repr(shown(own)) for own in file.layers[:LONGEST_FACES])
+        named = ", ".join(repr(shown(layer)) for layer in file.layers[:LONGEST_FACES])
         blocks += [
             BLANK,
             note(f"{len(file.layers)} layers are ignored: {named}{', …' if len(file.layers) > LONGEST_FACES else ''}"),
@@ -122,8 +122,8 @@ def features_report(file: StepFile) -> Page:
 
 def _uses(file: StepFile) -> Table:
     """Pose of each part, as in `use` and `placed` of a scene."""
-    products = {own.body.product: shown(own.name) for own in file.parts}
-    rows = [(shown(own.path), UseRow(products[own.product], own.frame)) for own in file.uses]
+    products = {part.body.product: shown(part.name) for part in file.parts}
+    rows = [(shown(use.path), UseRow(products[use.product], use.frame)) for use in file.uses]
     return declared_table("use", rows)
 
 
@@ -131,10 +131,10 @@ def _counted(part: StepPart) -> str:
     """Numbers of its solids, faces and features, and of those left aside."""
     solids, faces = len(part.body.solids), len(part.body.faces)
     found = [f"{solids} solid{'s' * (solids != 1)}", f"{faces} faces", f"{len(part.features)} features"]
-    repeated = sum(len(own.repeated) for own in part.features)
+    repeated = sum(len(feature.repeated) for feature in part.features)
     if repeated:
         found.append(f"{repeated} loose faces that repeat its own")
-    if loose := sum(own.loose for own in part.features):
+    if loose := sum(feature.loose for feature in part.features):
         found.append(f"{loose} features beside the solid, which no selector takes but by a face")
     return ", ".join(found)
 
@@ -147,7 +147,7 @@ def _table(part: StepPart) -> Table:
 def _first_faces(feature: FoundFeature) -> str:
     if len(feature.faces) <= LONGEST_FACES:
         return numbers(feature)
-    return f"{', '.join(f'#{own}' for own in feature.faces[:LONGEST_FACES])}, … ({len(feature.faces)})"
+    return f"{', '.join(f'#{face}' for face in feature.faces[:LONGEST_FACES])}, … ({len(feature.faces)})"
 
 
 def _drawn(part: StepPart, feature: FoundFeature) -> list[str]:
@@ -180,7 +180,7 @@ def _short(value: float) -> str:
 
 
 def _numbers(values: Sequence[float], decimals: int) -> str:
-    return ", ".join(f"{round(own, decimals) + 0.0:.9g}" for own in values)
+    return ", ".join(f"{round(value, decimals) + 0.0:.9g}" for value in values)
 
 
 def features_csv(file: StepFile) -> str:
@@ -255,15 +255,15 @@ def pmi_report(text: StepText) -> Page:
     found = Meanings(text, surfaces).all
     remarks = [*text.remarks, *disagreements(text, surfaces)]
     shapes = {
-        each.id: shape_of(each.features[0], surfaces, text.structure).words for each in text.datums if each.features
+        datum.id: shape_of(datum.features[0], surfaces, text.structure).words for datum in text.datums if datum.features
     }
-    datums = [(shown(each.letter), DatumRow(shapes.get(each.id, "–"), each)) for each in text.datums]
+    datums = [(shown(datum.letter), DatumRow(shapes.get(datum.id, "–"), datum)) for datum in text.datums]
     tolerances = [
         ("  " * (each.above is not None) + shown(frame(each)), ToleranceRow(each, meaning))
         for each, meaning in zip(text.tolerances, found, strict=True)
     ]
-    dimensions = [(shown(each), DimensionRow(each)) for each in text.dimensions]
-    left_out = [(f"#{each.id}", RemarkRow(each)) for each in remarks]
+    dimensions = [(shown(dimension), DimensionRow(dimension)) for dimension in text.dimensions]
+    left_out = [(f"#{remark.id}", RemarkRow(remark)) for remark in remarks]
     blocks = [
         *_block("Datums", str(len(text.datums)), declared_table("letter", datums)),
         *_block("Tolerances", _counted_pmi(found), declared_table("frame", tolerances)),
@@ -287,7 +287,7 @@ def _counted_pmi(found: Sequence[Meaning]) -> str:
 
 
 def _targets(datum: Datum) -> str:
-    return ", ".join(f"{datum.letter}{each.number} {each.kind}".strip() for each in datum.targets)
+    return ", ".join(f"{datum.letter}{target.number} {target.kind}".strip() for target in datum.targets)
 
 
 def _unit(measure: Measure | None) -> str:
@@ -296,7 +296,7 @@ def _unit(measure: Measure | None) -> str:
 
 def _faces(features: Sequence[NamedFeature]) -> str:
     """The faces of features: members of a pattern by commas, the sides of a distance by an arrow."""
-    return " → ".join(_listed(each) for each in features) or "–"
+    return " → ".join(_listed(feature) for feature in features) or "–"
 
 
 def _listed(feature: NamedFeature) -> str:

@@ -52,7 +52,7 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
     headings = {"analytic": "analytic"} | ({"geometric": study.engine} if method else {})
     found: dict[str, dict[str, FirstOrder]] = {measure.name: {} for measure in system.measures}
     found |= first_orders(simulation, method, [measure for measure in system.measures if measure.take != "curve"])
-    worst = worst_cases(simulation, method, [own for own in system.measures if found[own.name]])
+    worst = worst_cases(simulation, method, [measure for measure in system.measures if found[measure.name]])
     units = {
         name: shown_unit(own.unit, _nominal(found[name])) if name in long_in_mm else own.unit
         for name, own in ((measure.name, measure) for measure in system.measures)
@@ -78,7 +78,10 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
         ]
 
     def listed(measures: Sequence[Measure]) -> Table:
-        rows = [_measure_row(own, units[own.name], kinds[own.name], found[own.name], headings) for own in measures]
+        rows = [
+            _measure_row(measure, units[measure.name], kinds[measure.name], found[measure.name], headings)
+            for measure in measures
+        ]
         return declared_table("", [(own.name, row) for own, row in zip(measures, rows, strict=True)])
 
     tables, further = coefficients(shown), None
@@ -95,7 +98,9 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
     measures = titled("measures", replace(listed(shown), further=further))
     asked = system.measures if system.contributors else ()
     idle = [f"{own.name}: {words}" for own in asked if (words := nothing_acts(simulation, own))]
-    outside = [text for own in system.measures for text in _outside(own, units[own.name], found[own.name])]
+    outside = [
+        text for measure in system.measures for text in _outside(measure, units[measure.name], found[measure.name])
+    ]
     return [
         *_contributors(system.contributors),
         *measures,
@@ -117,7 +122,11 @@ def _worst(
 
 def _badness(measure: Measure, methods: Sequence[FirstOrder]) -> tuple[float, float]:
     """A key that sorts the worst first, by the last method that knows its sigma."""
-    known = [own for own in methods if math.isfinite(own.mean) and math.isfinite(own.sigma) and own.sigma > 0.0]
+    known = [
+        method
+        for method in methods
+        if math.isfinite(method.mean) and math.isfinite(method.sigma) and method.sigma > 0.0
+    ]
     if not known:
         return badness(None, None)
     own, per = known[-1], measure.per_internal
@@ -204,9 +213,12 @@ class SlopeRow:
 
 
 def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
-    table = declared_table("", [(own.name, ContributorRow(own)) for own in contributors])
-    notes = [note(MIDDLE)] if any(isinstance(own.draw, MiddleDraw) for own in contributors) else []
-    notes += sample_notes((own.name, own.draw.distribution, own.per_unit, own.unit) for own in contributors)
+    table = declared_table("", [(contributor.name, ContributorRow(contributor)) for contributor in contributors])
+    notes = [note(MIDDLE)] if any(isinstance(contributor.draw, MiddleDraw) for contributor in contributors) else []
+    notes += sample_notes(
+        (contributor.name, contributor.draw.distribution, contributor.per_unit, contributor.unit)
+        for contributor in contributors
+    )
     return [*titled("contributors", table), *notes] if contributors else []
 
 
@@ -303,12 +315,12 @@ def _percent(part: float, whole: float) -> float:
     return 100 * part / whole if whole else 0.0
 
 
-def _slope(own: FirstOrderEffect) -> Shown:
+def _slope(first_order_effect: FirstOrderEffect) -> Shown:
     """With its sign, where it has one; of several deviations what it is of."""
-    found = _number(own.slope, ".4g")
-    if own.each == 1 or found.value is None:
+    found = _number(first_order_effect.slope, ".4g")
+    if first_order_effect.each == 1 or found.value is None:
         return found
-    return Shown(f"{found} {'each' if own.alike else 'greatest'}", own.slope)
+    return Shown(f"{found} {'each' if first_order_effect.alike else 'greatest'}", first_order_effect.slope)
 
 
 def _number(value: float, form: str) -> Shown:

@@ -242,29 +242,29 @@ def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]
     yield from published_notes(measure)
 
 
-def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> Iterator[str]:
+def _sampling_notes(measure: MeasureSummary, sample: Sample, run: RunSummary) -> Iterator[str]:
     """Notes on the sampling errors of mean, sigma, ends and shares."""
     unit = measure.unit
     assembled = "assembled " if seated_text(measure) else ""
-    if own.mean_se is not None and own.sigma_se is not None:
-        mean, sigma, words = own.mean_se, own.sigma_se, "one standard error"
-        if own.error_by == "replicates" and own.mean_95 and own.sigma_95:  # not in runs made before
-            mean, sigma = (((high or 0.0) - (low or 0.0)) / 2 for low, high in (own.mean_95, own.sigma_95))
+    if sample.mean_se is not None and sample.sigma_se is not None:
+        mean, sigma, words = sample.mean_se, sample.sigma_se, "one standard error"
+        if sample.error_by == "replicates" and sample.mean_95 and sample.sigma_95:  # not in runs made before
+            mean, sigma = (((high or 0.0) - (low or 0.0)) / 2 for low, high in (sample.mean_95, sample.sigma_95))
             words = "95 % confidence, Student's t"
         yield (
-            f"sampling error of {own.count} {assembled}trials{_by_replicates(own, run)}: "
+            f"sampling error of {sample.count} {assembled}trials{_by_replicates(sample, run)}: "
             f"mean ±{difference_text(mean, unit)}, sigma ±{difference_text(sigma, unit)} ({words})"
         )
     if is_bounded(measure):
         yield "the distribution ends before mean ∓ 3 sigma: use the quantiles instead of low and high"
-    for words, quantile in (("0.135 % quantile", own.p0_135_95), ("99.865 % quantile", own.p99_865_95)):
+    for words, quantile in (("0.135 % quantile", sample.p0_135_95), ("99.865 % quantile", sample.p99_865_95)):
         if quantile:
             low, high = (measured_text(end, unit) for end in quantile)
             yield f"{words}: 95 % confidence interval {low} to {high}"
     if (bounds := ppk_bounds_text(measure)) != NOTHING:
         yield f"Ppk: 95 % confidence interval {bounds}"
     for key, label in limit_rows(measure).items():
-        low_high = getattr(own, f"{key}_95")
+        low_high = getattr(sample, f"{key}_95")
         if low_high:
             low, high = map(share_text, low_high)
             yield f"{label}: 95 % confidence interval of the fraction {low} to {high}"

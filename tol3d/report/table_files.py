@@ -126,26 +126,26 @@ def json_file(grids: Iterable[Grid], about: Mapping[str, object]) -> bytes:
         grids: the tables.
         about: what stands beside them.
     """
-    tables = [{"name": own.name, "columns": own.headings, "rows": own.rows} for own in grids]
+    tables = [{"name": grid.name, "columns": grid.headings, "rows": grid.rows} for grid in grids]
     return json.dumps({**about, "tables": tables}, indent=1, ensure_ascii=False, allow_nan=False).encode() + b"\n"
 
 
 def xlsx_file(grids: Sequence[Grid]) -> bytes:
     """A workbook with a sheet for each table."""
-    return workbook([Sheet(own.name, own.headings, own.rows) for own in grids])
+    return workbook([Sheet(grid.name, grid.headings, grid.rows) for grid in grids])
 
 
 def _headed(heading: Heading, unit: str, cells: Sequence[str]) -> str:
     text = heading.text.strip() or "value"
-    numbers = any(isinstance(own, Shown) for own in cells)
+    numbers = any(isinstance(cell, Shown) for cell in cells)
     return f"{text} [{unit}]" if unit and numbers and not heading.plain and "[" not in text else text
 
 
 def _carried(labels: Iterable[str]) -> Iterator[str]:
     """Labels, where one is left out the one above."""
     last = ""
-    for own in labels:
-        last = own or last
+    for label in labels:
+        last = label or last
         yield last
 
 

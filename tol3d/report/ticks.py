@@ -24,7 +24,7 @@ def ticks_of(low: float, high: float, unit: str, most: int) -> Ticks:
     step = seconds / 60 if seconds else _even_step((high - low) / most)
     values = step * np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)
     if unit == "arcmin":
-        return [(float(own), minutes_seconds(float(own))) for own in values]
+        return [(float(value), minutes_seconds(float(value))) for value in values]
     digits = max(0, -math.floor(math.log10(step) + 1e-9))
     digits += bool(round(step * 10**digits, 6) % 1)
     return [(float(own), f"{own + 0.0:.{digits}f}".replace("-", "−")) for own in np.round(values, digits)]
@@ -43,8 +43,8 @@ def decades(low: float, high: float) -> Ticks:
     ([(10.0, '10'), (100.0, '100'), (1000.0, '1 000')], [(20.0, '20'), (70.0, '70')])
     """
     powers = range(math.ceil(math.log10(low) - 1e-9), math.floor(math.log10(high) + 1e-9) + 1)
-    numbers = [10.0**own for own in powers] if len(powers) > 1 else [low, high]
-    return [(own, f"{own:,.10g}".replace(",", " ")) for own in dict.fromkeys(numbers)]
+    numbers = [10.0**power for power in powers] if len(powers) > 1 else [low, high]
+    return [(number, f"{number:,.10g}".replace(",", " ")) for number in dict.fromkeys(numbers)]
 
 
 def angle_step(low: float, high: float, most: int = MOST_TICKS) -> float | None:

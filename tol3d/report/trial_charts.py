@@ -176,8 +176,8 @@ def compared_runs(measure: Compared, shown: Sequence[Shown]) -> Chart:
     bars = [own for own in series if isinstance(own, Filled | Outline)]
     if not bars:
         return Chart(f"{name} by methods", Axis(name, 0.0, 1.0, first.unit), (), name, words, instead="no histogram")
-    across = spanned(name, np.concatenate([own.edges for own in bars]), first.unit)
-    top = ROOM * max(float(own.heights.max()) for own in bars) or 1.0
+    across = spanned(name, np.concatenate([bar.edges for bar in bars]), first.unit)
+    top = ROOM * max(float(bar.heights.max()) for bar in bars) or 1.0
     marks = [mark for mark in _limits(name, shown) if across.low <= mark.value <= across.high]
     panel = Panel(Axis(f"% of trials per {UNIT_SIGNS[first.unit]}", 0.0, top), series, marks)
     return Chart(f"{name} by methods", across, [panel], name, words)

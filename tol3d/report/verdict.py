@@ -56,7 +56,7 @@ def accepted_text(accepted: Accepted, measures: Iterable[MeasureSummary] = ()) -
     """
     if isinstance(accepted, AcceptedPpk):
         return f"Ppk {accepted.ppk:.4g} ({share_text(accepted.beyond_one_ppm)} beyond each limit)"
-    counts = {2 - own.limits.count(None) for own in measures if own.has_limits} or {1, 2}
+    counts = {2 - measure.limits.count(None) for measure in measures if measure.has_limits} or {1, 2}
     ppks = {count: ppk_beyond(accepted * 1e-6 / count) for count in sorted(counts, reverse=True)}
     words = ", ".join(f"{ppk:.2f} with {'two limits' if count == 2 else 'one'}" for count, ppk in ppks.items())
     if len(ppks) == 1:
@@ -107,7 +107,7 @@ def verdict_lines(runs: Sequence[tuple[str, RunSummary]], accepted: Accepted | N
 def _worst_verdict(run: RunSummary, accepted: Accepted | None) -> tuple[Verdict, int, str]:
     """The worst verdict of all measures, the number of measures with limits, and how many of several have it."""
     asked = demand_of(run.study.accept_ppk, accepted)
-    found = Counter(JudgedMeasure.of(own, asked).verdict for own in run.measures.values())
+    found = Counter(JudgedMeasure.of(measure, asked).verdict for measure in run.measures.values())
     judged = sum(found.values()) - found["no limits"]
     worst: Verdict = next((own for own in ("NOT OK", "too few trials", "OK") if found[own]), "no limits")
     return worst, judged, f", {found[worst]} of {judged} measures" if judged > 1 else ""
@@ -132,7 +132,7 @@ def _left_out(run: RunSummary, accepted: Accepted | None) -> Iterator[PageItem]:
     left = len(run.measures) - MOST_MEASURES
     if left > 0:
         asked = demand_of(run.study.accept_ppk, accepted)
-        found = Counter(JudgedMeasure.of(own, asked).verdict for own in run.measures.values())
+        found = Counter(JudgedMeasure.of(measure, asked).verdict for measure in run.measures.values())
         counts = ", ".join(f"{found[verdict]} {verdict}" for verdict in get_args(Verdict) if found[verdict])
         yield line(f" and {left} more, all in summary.json; the worst are shown, {WORST_FIRST}")
         yield line(f" all {len(run.measures)} measures: {counts}", "bold")
@@ -286,7 +286,9 @@ def _notes(run: RunSummary) -> Iterator[str]:
     )
     yield _ends_note(run)
     words = {
-        own.shares.ppk_by: PPK_MEANS[own.shares.ppk_by] for own in measures if own.has_limits and own.shares.ppk_by
+        measure.shares.ppk_by: PPK_MEANS[measure.shares.ppk_by]
+        for measure in measures
+        if measure.has_limits and measure.shares.ppk_by
     }
     if words:
         yield f"Ppk by {'; by '.join(words[key] for key in PPK_BY if key in words)}"
@@ -310,5 +312,5 @@ def _ends_note(run: RunSummary) -> str:
     ends = "low, high: mean ∓ 3 sigma"
     if any(map(_by_quantiles, measures)):
         ends += "; * the 0.135 % and 99.865 % quantiles, because the trials end before"
-    ends += ", of a curve over its positions" if any(own.take == "curve" for own in measures) else ""
+    ends += ", of a curve over its positions" if any(measure.take == "curve" for measure in measures) else ""
     return ends + ("; of the assembled trials" if any(map(seated_text, measures)) else "")

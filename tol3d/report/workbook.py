@@ -45,7 +45,7 @@ class Sheet:
 
 def workbook(sheets: Sequence[Sheet]) -> bytes:
     """The bytes of an .xlsx file; the same sheets give the same ones."""
-    names = sheet_names([own.name for own in sheets])
+    names = sheet_names([sheet.name for sheet in sheets])
     numbers = range(1, len(sheets) + 1)
     listed = [
         tag("sheet", name_=name, sheetId=k, **{"r:id": f"rId{k}"}) for k, name in zip(numbers, names, strict=True)
@@ -97,9 +97,9 @@ def escaped_text(text: str) -> str:
     return "".join(sign if sign in "&<>\"'" else str(escaped(sign)) for sign in text)
 
 
-def _sheet(own: Sheet) -> Markup:
-    rows = [_row(1, own.headings, BOLD), *(_row(number, row, TEXT) for number, row in enumerate(own.rows, 2))]
-    columns = [tag("col", min=k, max=k, width=width + 2.0, customWidth=1) for k, width in enumerate(_widths(own), 1)]
+def _sheet(sheet: Sheet) -> Markup:
+    rows = [_row(1, sheet.headings, BOLD), *(_row(number, row, TEXT) for number, row in enumerate(sheet.rows, 2))]
+    columns = [tag("col", min=k, max=k, width=width + 2.0, customWidth=1) for k, width in enumerate(_widths(sheet), 1)]
     pane = tag("pane", xSplit=1, ySplit=1, topLeftCell="B2", state="frozen", activePane="bottomRight")
     views = tag("sheetViews", tag("sheetView", pane, workbookViewId=0))
     return tag("worksheet", views, tag("cols", *columns), tag("sheetData", *rows), xmlns=MAIN)
@@ -132,8 +132,8 @@ def _letters(column: int) -> str:
     return found
 
 
-def _widths(own: Sheet) -> list[int]:
-    columns = zip(own.headings, *own.rows, strict=True)
+def _widths(sheet: Sheet) -> list[int]:
+    columns = zip(sheet.headings, *sheet.rows, strict=True)
     return [min(WIDEST, max(len(cell) if isinstance(cell, str) else 10 for cell in column)) for column in columns]
 
 

@@ -47,12 +47,14 @@ def worst_blocks(simulation: Simulation) -> list[PageItem]:
     found = worst_cases(simulation, method, measures)
     headings = {"analytic": "analytic"} | ({"geometric": simulation.study.engine} if method else {})
     rows = []
-    for own in measures:
-        worst = {name: found[own.name][method] for method, name in headings.items()}
-        if any(found[own.name].values()):
+    for measure in measures:
+        worst = {name: found[measure.name][method] for method, name in headings.items()}
+        if any(found[measure.name].values()):
             ends = [{name: getattr(each, end, None) for name, each in worst.items()} for end in ("low", "high")]
-            low, high = ({name: _end_text(simulation, own, own.unit, each) for name, each in of.items()} for of in ends)
-            rows.append((own.name, WorstRow(low, high)))
+            low, high = (
+                {name: _end_text(simulation, measure, measure.unit, each) for name, each in of.items()} for of in ends
+            )
+            rows.append((measure.name, WorstRow(low, high)))
     if not rows:
         return []
     return [*titled("worst found", declared_table("", rows)), note(WORST_FOUND)]

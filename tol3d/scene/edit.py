@@ -71,7 +71,7 @@ def _edited(scene: Scene, changed: Tolerances) -> str:
 
 def without(text: str, includes: Mapping[str, Any], name: str) -> str:
     """A scene's text in which an entry of an included file is left out."""
-    prefix = max((own for own in includes if name.startswith(f"{own} ")), key=len)
+    prefix = max((include for include in includes if name.startswith(f"{include} ")), key=len)
     given = includes[prefix]
     spelt = {"file": given} if isinstance(given, str) else given
     left_out = [*spelt.get("without", ()), name.removeprefix(f"{prefix} ")]

@@ -150,10 +150,10 @@ class Grammar:
             if not any(words.values()):
                 raise InputError(f"expected kinds of {section} in one vocabulary at least, found none")
             _refuse_ambiguity(f"a kind of its own in {section}", {}, words)
-            for each in self.vocabularies:
-                for spec in each.specs(section):
+            for vocabulary in self.vocabularies:
+                for spec in vocabulary.specs(section):
                     for lack in spec.lacking():
-                        raise InputError(f"{each.name}.{section}: {kind_of(spec)} lacks {lack}")
+                        raise InputError(f"{vocabulary.name}.{section}: {kind_of(spec)} lacks {lack}")
         laws = {each.name: [str(word_of(law)) for law in each.distributions] for each in self.vocabularies}
         _refuse_ambiguity("a kind of its own in distributions", {str(word_of(law)): "tol3d" for law in SHIPPED}, laws)
         options = {each.name: [*each.options.model_fields] for each in self.vocabularies if each.options}
@@ -174,26 +174,28 @@ class Grammar:
 
     def kinds(self, section: str) -> Mapping[str, type[Entry]]:
         """The kinds of a section by their words, in the order of registration."""
-        return {str(kind_of(spec)): spec for each in self.vocabularies for spec in each.specs(section)}
+        return {str(kind_of(spec)): spec for vocabulary in self.vocabularies for spec in vocabulary.specs(section)}
 
     def instead_of_kind(self, word: object) -> str:
         """Replacement for a kind that is not known; "" where no vocabulary gives one."""
-        return _said_of(word, (each.other_kinds for each in self.vocabularies))
+        return _said_of(word, (vocabulary.other_kinds for vocabulary in self.vocabularies))
 
     def instead_of_key(self, word: object) -> str:
         """The same of a key or a choice."""
-        return _said_of(word, (each.other_keys for each in self.vocabularies))
+        return _said_of(word, (vocabulary.other_keys for vocabulary in self.vocabularies))
 
     @property
     def laws(self) -> Laws:
         """The kinds of law that tolerances may state: those that tol3d ships, then the vocabularies' own."""
-        return (*SHIPPED, *(law for each in self.vocabularies for law in each.distributions))
+        return (*SHIPPED, *(law for vocabulary in self.vocabularies for law in vocabulary.distributions))
 
     @property
     def engines(self) -> Engines:
         """Engines for scenes of these kinds."""
-        names = dict.fromkeys(engine for each in self.vocabularies for engine in each.engines)
-        return Engines(tuple(names), tuple(each.witness for each in self.vocabularies if each.witness))
+        names = dict.fromkeys(engine for vocabulary in self.vocabularies for engine in vocabulary.engines)
+        return Engines(
+            tuple(names), tuple(vocabulary.witness for vocabulary in self.vocabularies if vocabulary.witness)
+        )
 
     @property
     def scene(self) -> type[Scene]:
@@ -211,7 +213,9 @@ class Grammar:
 
     def problems(self, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         """Errors that the vocabularies find across entries."""
-        if scene.envelope and not any("envelope" in type(own).model_fields for own in scene.tolerances.values()):
+        if scene.envelope and not any(
+            "envelope" in type(tolerance).model_fields for tolerance in scene.tolerances.values()
+        ):
             yield ("envelope",), "expected a size tolerance, whose limits bound a form, found none; take it out"
         for vocabulary in self.vocabularies:
             for check in vocabulary.checks:
@@ -240,7 +244,11 @@ class Grammar:
             SceneError: the kinds of the scene are of several, none of which understands the others.
         """
         used = self._used(scene)
-        found = [each for each in self.vocabularies if each.name in used and used.keys() <= self._understood(each)]
+        found = [
+            vocabulary
+            for vocabulary in self.vocabularies
+            if vocabulary.name in used and used.keys() <= self._understood(vocabulary)
+        ]
         moves = {type(move) for move in scene.moves.values()}
         if found:
             return next((each for each in found if moves <= set(each.moves)), found[0])
@@ -255,11 +263,13 @@ class Grammar:
         return self._go_together(self._used(scene).keys())
 
     def _go_together(self, names: Set[str]) -> bool:
-        return any(each.name in names and names <= self._understood(each) for each in self.vocabularies)
+        return any(
+            vocabulary.name in names and names <= self._understood(vocabulary) for vocabulary in self.vocabularies
+        )
 
     def _joining(self, names: Set[str]) -> str:
         """The moves of a vocabulary that understands some others and whose own kinds are not there; or nothing."""
-        joining = next((each for each in self.vocabularies if names <= self._understood(each)), None)
+        joining = next((vocabulary for vocabulary in self.vocabularies if names <= self._understood(vocabulary)), None)
         kinds = [kind_of(spec) for spec in joining.moves] if joining else []
         return "join them by " + " or ".join(f"a move of kind {kind}" for kind in kinds) if kinds else ""
 
@@ -271,7 +281,7 @@ class Grammar:
     def lawgivers_of(self, scene: Scene) -> tuple[Vocabulary, ...]:
         """The vocabularies whose distributions a scene states."""
         used = {type(law) for entry in scene.tolerances.values() for law in laws_in(entry)}
-        return tuple(each for each in self.vocabularies if used & set(each.distributions))
+        return tuple(vocabulary for vocabulary in self.vocabularies if used & set(vocabulary.distributions))
 
     def options_of(self, scene: Scene) -> Mapping[str, Option]:
         """The values of the options that vocabularies of a scene's kinds add to its study.
@@ -280,10 +290,12 @@ class Grammar:
             SceneError: the study has an option of a vocabulary none of whose kinds the scene has.
         """
         used = self.vocabularies_of(scene)
-        for each in self.vocabularies:
-            for name in each.options.model_fields if each.options and each not in used else ():
+        for vocabulary in self.vocabularies:
+            for name in vocabulary.options.model_fields if vocabulary.options and vocabulary not in used else ():
                 if name in scene.study.model_fields_set:
-                    raise scene.refuse(("study", name), f"no kind of {each.name} is in the scene; take out {name}")
+                    raise scene.refuse(
+                        ("study", name), f"no kind of {vocabulary.name} is in the scene; take out {name}"
+                    )
         values = (options_of(scene.options(each.options), each.options) for each in used if each.options)
         return {name: value for each in values for name, value in each.items()}
 
@@ -311,10 +323,10 @@ class Grammar:
     def _owners(self) -> Mapping[type[Entry], Sequence[str]]:
         """Names of the vocabularies that have a kind."""
         found: dict[type[Entry], list[str]] = {}
-        for each in self.vocabularies:
+        for vocabulary in self.vocabularies:
             for section in SECTIONS:
-                for spec in each.specs(section):
-                    found.setdefault(spec, []).append(each.name)
+                for spec in vocabulary.specs(section):
+                    found.setdefault(spec, []).append(vocabulary.name)
         return found
 
     def _first(self, vocabulary: Vocabulary, section: str) -> list[type[Entry]]:
@@ -332,9 +344,13 @@ def _scene_class(grammar: Grammar, required: frozenset[str] = REQUIRED) -> type[
         means = SECTIONS_MEAN[section]
         field = Field(min_length=1, description=means) if given else Field(default_factory=dict, description=means)
         sections[section] = (Mapping[Name, union], field)  # type: ignore[valid-type]  # made at run time
-    study = study_spec_class(grammar.engines, tuple(each.options for each in grammar.vocabularies if each.options))
+    study = study_spec_class(
+        grammar.engines, tuple(vocabulary.options for vocabulary in grammar.vocabularies if vocabulary.options)
+    )
     sections["study"] = (study, Field(default_factory=study, description="number of builds, and their draws"))
-    column: Any = published_column_class(tuple(each.published for each in grammar.vocabularies if each.published))
+    column: Any = published_column_class(
+        tuple(vocabulary.published for vocabulary in grammar.vocabularies if vocabulary.published)
+    )
     sections["published"] = (Mapping[Name, column], Field(default_factory=dict, description=PUBLISHED_MEANS))
     made = create_model("Scene", __base__=Scene, __module__=Scene.__module__, __doc__=Scene.__doc__, **sections)
     made.grammar, made.laws = grammar, grammar.laws
@@ -342,7 +358,7 @@ def _scene_class(grammar: Grammar, required: frozenset[str] = REQUIRED) -> type[
 
 
 def _said_of(word: object, pairs: Iterable[tuple[tuple[str, str], ...]]) -> str:
-    return next((advice for own in pairs for other, advice in own if other == word), "")
+    return next((advice for pair in pairs for other, advice in pair if other == word), "")
 
 
 def _refuse_ambiguity(expected: str, owners: Mapping[str, str], words: Mapping[str, Sequence[str]]) -> None:

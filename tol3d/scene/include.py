@@ -160,7 +160,10 @@ class Includes:
         for path, entry in part.entries().items():
             for place, _ in entry.file_names():
                 top = _changed(top, (*path, *place), partial(posixpath.join, posixpath.dirname(name)))
-        uses = {path: [(each.path, each.name) for each in entry.references()] for path, entry in part.entries().items()}
+        uses = {
+            path: [(reference.path, reference.name) for reference in entry.references()]
+            for path, entry in part.entries().items()
+        }
         return _Read(
             name, {section: top.held(section) for section in SECTIONS}, uses, part.parts, top.held(CORRELATIONS)
         )
@@ -203,7 +206,7 @@ def _refuse_same(section: str, new: Children, there: Children, origin: Origin) -
 
 def _named(read: _Read, name: str, spec: IncludeSpec, origin: Origin) -> Sections:
     """The entries of a file as the scene has them."""
-    known = [str(own) for entries in read.sections.values() for own in entries]
+    known = [str(entry) for entries in read.sections.values() for entry in entries]
     for k, missing in enumerate(spec.without):
         if missing not in known:
             here = (INCLUDE, name, "without", k)
@@ -305,20 +308,20 @@ def _with_sections(top: Node, sections: Sections) -> Node:
     return branch({}, top.place, children)
 
 
-def _ordered(own: Sections, included: Sequence[Sections]) -> dict[Any, tuple[Place, Node]]:
+def _ordered(sections: Sections, included: Sequence[Sections]) -> dict[Any, tuple[Place, Node]]:
     """All moves: those of a file after each by which the scene places one of its parts, else before the scene's own."""
     before: dict[Any, tuple[Place, Node]] = {}
     after: dict[Any, dict[Any, tuple[Place, Node]]] = {}
     first: dict[Any, Any] = {}
-    for name, (_, node) in own["moves"].items():
+    for name, (_, node) in sections["moves"].items():
         first.setdefault(_part(node), name)
-    order = {name: k for k, name in enumerate(own["moves"])}
+    order = {name: k for k, name in enumerate(sections["moves"])}
     for file in included:
         placed = {_part(node) for _, node in file["moves"].values()}
         placing = [first[part] for part in file["parts"] if part in first and part not in placed]
         target = after.setdefault(max(placing, key=order.__getitem__), {}) if placing else before
         target.update(file["moves"])
-    for name, child in own["moves"].items():
+    for name, child in sections["moves"].items():
         before |= {name: child, **after.get(name, {})}
     return before
 

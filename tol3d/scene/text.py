@@ -287,10 +287,10 @@ class _Composer:
     def _merged(self, node: Node, path: KeyPath, place: Place) -> Iterator[tuple[Key, tuple[Place, Node]]]:
         """The keys that a merge key brings; of several mappings the first that has a key gives its value."""
         mappings = [node] if isinstance(node.value, dict) else [own for _, own in node.children.values()]
-        if not mappings or not all(isinstance(own.value, dict) for own in mappings):
+        if not mappings or not all(isinstance(mapping.value, dict) for mapping in mappings):
             words = "expected a mapping beside <<, or a list of them, such as <<: *block"
             self._refuse((*path, MERGE), f"{words}, got {shown(plain(node))}", place)
-        return (entry for own in mappings for entry in own.children.items())
+        return (entry for mapping in mappings for entry in mapping.children.items())
 
     def _key(self, event: Any, path: KeyPath) -> str:
         key = self._scalar(event, path) if isinstance(event, yaml.ScalarEvent) and event.tag is None else None

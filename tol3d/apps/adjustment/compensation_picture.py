@@ -56,24 +56,33 @@ def _edges(found: Sequence[Compensation], unit: Unit) -> Array:
 # at a random position -----------------------------------------------------------------------------
 
 
-def remaining_chart(own: Compensation, unit: Unit, edges: Array) -> Chart:
+def remaining_chart(compensation: Compensation, unit: Unit, edges: Array) -> Chart:
     """Histograms of the remaining error in each state, the sums of highs, and published errors."""
-    words = f"{own.robots - own.failed} robots at a random position, {COLUMN_WORDS[own.method]}"
-    across = Axis(_label(own, unit), float(edges[0]), float(edges[-1]), unit)
-    alternative = f"remaining error of {own.name}"
-    bars = [*_samples(own, unit, edges)]
+    words = (
+        f"{compensation.robots - compensation.failed} robots at a random position, {COLUMN_WORDS[compensation.method]}"
+    )
+    across = Axis(_label(compensation, unit), float(edges[0]), float(edges[-1]), unit)
+    alternative = f"remaining error of {compensation.name}"
+    bars = [*_samples(compensation, unit, edges)]
     if not bars:
-        return Chart(alternative, across, (), own.name, words, instead="no robot could be assembled")
-    top = 1.05 * max(float(each.heights.max()) for each in bars)
+        return Chart(alternative, across, (), compensation.name, words, instead="no robot could be assembled")
+    top = 1.05 * max(float(bar.heights.max()) for bar in bars)
     y = Axis(f"% of robots per {short_text(float(edges[1] - edges[0]), unit)}", 0.0, top)
-    marks = [Mark(0.0, "guide", role="soft"), *_highs(own, unit)]
-    table = [(label, text) for each in bars for label, _, text in [each.label.partition(": ")]]
-    return Chart(alternative, across, [Panel(y, [*bars, *_published(own, unit)], marks)], own.name, words, table)
+    marks = [Mark(0.0, "guide", role="soft"), *_highs(compensation, unit)]
+    table = [(label, text) for bar in bars for label, _, text in [bar.label.partition(": ")]]
+    return Chart(
+        alternative,
+        across,
+        [Panel(y, [*bars, *_published(compensation, unit)], marks)],
+        compensation.name,
+        words,
+        table,
+    )
 
 
-def _samples(own: Compensation, unit: Unit, edges: Array) -> Iterator[Filled]:
+def _samples(compensation: Compensation, unit: Unit, edges: Array) -> Iterator[Filled]:
     """Remaining error in each state; nothing if no robot could be assembled."""
-    values = own.remaining[own.method].in_unit(unit)
+    values = compensation.remaining[compensation.method].in_unit(unit)
     for state in STATES:
         if len(values[state]):
             heights = float(edges[1] - edges[0]) * Bars.of(values[state], edges).density
@@ -87,32 +96,32 @@ def _ends_text(spread: Spread, unit: Unit) -> str:
     )
 
 
-def _highs(own: Compensation, unit: Unit) -> Iterator[Mark]:
+def _highs(compensation: Compensation, unit: Unit) -> Iterator[Mark]:
     """The sums of the stages' highs by the leading method."""
-    correction = own.corrections[own.method]
+    correction = compensation.corrections[compensation.method]
     cases: tuple[tuple[str, float | None, State], ...] = (
         ("sum of highs", correction.before, "before"),
         ("sum of highs, compensated", correction.left, "batch"),
     )
     for label, arcmin, state in cases:
-        value = tip_mm(arcmin, own.lever) if unit == "mm" else arcmin
+        value = tip_mm(arcmin, compensation.lever) if unit == "mm" else arcmin
         if value is not None:
             yield Mark(value, "guide", label=f"{label}: {short_text(value, unit)}", role=ROLES[state])
 
 
-def _published(own: Compensation, unit: Unit) -> Iterator[Points]:
+def _published(compensation: Compensation, unit: Unit) -> Iterator[Points]:
     """Published displacements of the tip without compensation."""
-    for column, values in own.play.published_tips.items():
+    for column, values in compensation.play.published_tips.items():
         for key, word in TOLD_OF_TIPS.items():
             if unit == "mm" and values.get(key) is not None:
                 label = f"{column}, {word}: {given_text(values[key], unit)} mm"
                 yield Points(np.array([values[key]]), np.zeros(1), "published-1", label, SIGNS[key])
 
 
-def _label(own: Compensation, unit: Unit) -> str:
-    if own.play.tip and own.play.tip.tip and unit == "mm":
-        return f"error of {own.play.tip.tip.point} of {own.play.tip.tip.arm}"
-    return f"error of {own.play.shaft}"
+def _label(compensation: Compensation, unit: Unit) -> str:
+    if compensation.play.tip and compensation.play.tip.tip and unit == "mm":
+        return f"error of {compensation.play.tip.tip.point} of {compensation.play.tip.tip.arm}"
+    return f"error of {compensation.play.shaft}"
 
 
 # over the swing -----------------------------------------------------------------------------------
@@ -134,29 +143,34 @@ def _band(curve: Array) -> tuple[Array, Array, Array]:
     return mean, low, high
 
 
-def swing_chart(own: Compensation, span: tuple[float, float]) -> Chart:
+def swing_chart(compensation: Compensation, span: tuple[float, float]) -> Chart:
     """Mean and ±3 sigma of the robots over the swing, in each state."""
     label = "output position"
-    if own.swing is None:
+    if compensation.swing is None:
         instead = "no tip error over a swing in which the load changes side"
-        return Chart(f"{own.name} over its swing", Axis(label, 0.0, 1.0, "deg"), (), own.name, instead=instead)
+        return Chart(
+            f"{compensation.name} over its swing", Axis(label, 0.0, 1.0, "deg"), (), compensation.name, instead=instead
+        )
     bands, lines = list[Series](), list[Series]()
     for state in STATES:
-        mean, low, high = _band(own.swing.curves[own.method][state])
-        for first, last in _stretches(own.swing):
-            x = np.degrees(_reaching_the_jumps(own.swing, first, last))
-            lower, middle, upper = (_held(own.swing, ends, first, last) for ends in (low, mean, high))
+        mean, low, high = _band(compensation.swing.curves[compensation.method][state])
+        for first, last in _stretches(compensation.swing):
+            x = np.degrees(_reaching_the_jumps(compensation.swing, first, last))
+            lower, middle, upper = (_held(compensation.swing, ends, first, last) for ends in (low, mean, high))
             bands.append(Band(x, lower, upper, ROLES[state]))
             stroke: Stroke = "dashed" if state == "robot" else "solid"  # it may lie on the batch's
             lines.append(Line(x, middle, ROLES[state], STATE_WORDS[state] if first == 0 else "", stroke))
     marks = [
-        Mark(angle, "guide", label=f"the load changes side, {angle:.1f}°") for angle in np.degrees(own.swing.jumps)
+        Mark(angle, "guide", label=f"the load changes side, {angle:.1f}°")
+        for angle in np.degrees(compensation.swing.jumps)
     ]
-    words = f"{own.swing.measure}: mean and ±3 sigma of the robots, {COLUMN_WORDS[own.method]}"
-    ends = np.degrees(own.swing.output[[0, -1]])
-    y = Axis(_label(own, "mm"), *span, "mm")
+    words = f"{compensation.swing.measure}: mean and ±3 sigma of the robots, {COLUMN_WORDS[compensation.method]}"
+    ends = np.degrees(compensation.swing.output[[0, -1]])
+    y = Axis(_label(compensation, "mm"), *span, "mm")
     across = Axis(label, float(ends[0]), float(ends[1]), "deg")
-    return Chart(f"{own.name} over its swing", across, [Panel(y, [*bands, *lines], marks)], own.name, words)
+    return Chart(
+        f"{compensation.name} over its swing", across, [Panel(y, [*bands, *lines], marks)], compensation.name, words
+    )
 
 
 def _stretches(swing: Swing) -> list[tuple[int, int]]:

@@ -116,16 +116,16 @@ def compensation_report(found: Sequence[Compensation]) -> Page:
     return page(*blocks)
 
 
-def _title(own: Compensation) -> Line:
-    text = f" · {own.play.train.name}: the motor's compensation when the load changes side"
-    return Line(((own.name, "bold"), (text, "")))
+def _title(compensation: Compensation) -> Line:
+    text = f" · {compensation.play.train.name}: the motor's compensation when the load changes side"
+    return Line(((compensation.name, "bold"), (text, "")))
 
 
-def _words(own: Compensation) -> str:
-    failed = f", {own.failed} of them could not be assembled and are left out" if own.failed else ""
+def _words(compensation: Compensation) -> str:
+    failed = f", {compensation.failed} of them could not be assembled and are left out" if compensation.failed else ""
     return (
-        f"{own.robots} robots{failed}, seed {own.play.simulation.study.seed}; "
-        f"each robot's own mean at {own.positions} positions "
+        f"{compensation.robots} robots{failed}, seed {compensation.play.simulation.study.seed}; "
+        f"each robot's own mean at {compensation.positions} positions "
         "of its long period, its error at another one"
     )
 
@@ -191,7 +191,7 @@ def left_table(found: Sequence[Compensation], unit: Unit) -> Table:
         spreads = [Spread(own.remaining[own.method].in_unit(unit)[state]) for own in found]
         rows.append(Row(STATE_WORDS[state], [""] * len(found), "bold"))
         for label, (value, error) in TAKEN.items():
-            rows.append(Row(f"  {label}", [_with_error(value(own), error(own), unit) for own in spreads]))
+            rows.append(Row(f"  {label}", [_with_error(value(spread), error(spread), unit) for spread in spreads]))
         rows.append(Row("  sigma, closed form", [value_text(_form_sigma(own, state, unit), unit) for own in found]))
     return Table("[mm]" if unit == "mm" else "[′, ″ of arc]", _headings(found), rows)
 
@@ -201,9 +201,9 @@ def _with_error(value: float, error: float | None, unit: Unit) -> str:
     return text if error is None or math.isnan(error) else f"{text} ±{value_text(error, unit)}"
 
 
-def _form_sigma(own: Compensation, state: State, unit: Unit) -> float | None:
-    sigma = own.form_sigmas.get(state)
-    return tip_mm(sigma, own.lever) if unit == "mm" else sigma
+def _form_sigma(compensation: Compensation, state: State, unit: Unit) -> float | None:
+    sigma = compensation.form_sigmas.get(state)
+    return tip_mm(sigma, compensation.lever) if unit == "mm" else sigma
 
 
 # sums of highs ------------------------------------------------------------------------------------
@@ -230,9 +230,9 @@ def highs_table(found: Sequence[Compensation]) -> Table:
 
 def _published_rows(found: Sequence[Compensation]) -> Iterator[Row]:
     tips = [own.play.published_tips for own in found]
-    for column in dict.fromkeys(column for own in tips for column in own):
+    for column in dict.fromkeys(column for tip in tips for column in tip):
         for key, word in TOLD_OF_TIPS.items():
-            values = [own.get(column, {}).get(key) for own in tips]
+            values = [tip.get(column, {}).get(key) for tip in tips]
             if any(value is not None for value in values):
                 cells = [given_text(value, "mm") if value is not None else NOTHING for value in values]
                 yield Row(f"{column}: {word} of the tip, not compensated [mm]", cells, "green")
@@ -256,7 +256,9 @@ def swing_table(found: Sequence[Compensation]) -> Table:
     rows = [Row("at the output's angle", [_jumps(own.swing) for own in found if own.swing])]
     for link in dict.fromkeys(link for own in found if own.swing for link in own.swing.flanks):
         flanks = [own.swing.flanks.get(link) for own in found if own.swing]
-        rows.append(Row(f"{link}: flank of the driver{_which_change(found)}", [_flanks_text(each) for each in flanks]))
+        rows.append(
+            Row(f"{link}: flank of the driver{_which_change(found)}", [_flanks_text(flank) for flank in flanks])
+        )
     for state in STATES:
         jumps = [_jump(own.swing, own.method, state) for own in found if own.swing]
         rows.append(Row(f"jump, {STATE_WORDS[state]} [mm]", [value_text(jump, "mm") for jump in jumps]))

@@ -83,11 +83,11 @@ class Pieces:
 
     def below(self, thickness: float) -> float:
         """See Stock."""
-        return max(own for own in self._stacks if own <= thickness + SAME_THICKNESS)
+        return max(stack for stack in self._stacks if stack <= thickness + SAME_THICKNESS)
 
     def above(self, thickness: float) -> float | None:
         """See Stock."""
-        return min((own for own in self._stacks if own > thickness + SAME_THICKNESS), default=None)
+        return min((stack for stack in self._stacks if stack > thickness + SAME_THICKNESS), default=None)
 
     def words(self, thickness: float) -> str:
         """See Stock."""

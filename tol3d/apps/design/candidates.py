@@ -30,65 +30,68 @@ PLANET: Final = "planets"
 SHIFT_DIGITS: Final = 9  # behind the point; a module of 100 mm errs by a ten-thousandth of a micrometre
 
 
-def scene_text(own: Candidate, family: Family) -> str:
+def scene_text(candidate: Candidate, family: Family) -> str:
     """YAML of a scene; thinning of the teeth and face widths are placeholders, and say so."""
-    return "\n".join((*_head(own, family), *_parts(own), *_tolerances(own), *_move(own), *_rest())) + "\n"
+    return (
+        "\n".join((*_head(candidate, family), *_parts(candidate), *_tolerances(candidate), *_move(candidate), *_rest()))
+        + "\n"
+    )
 
 
-def _head(own: Candidate, family: Family) -> Iterator[str]:
-    drive = own.task.drive
-    teeth = teeth_text(own.own.teeth)
-    yield f"# A {family.words} as tol3d design found it: {family.order} {teeth}, ratio {own.ratio:.10g},"
+def _head(candidate: Candidate, family: Family) -> Iterator[str]:
+    drive = candidate.task.drive
+    teeth = teeth_text(candidate.own.teeth)
+    yield f"# A {family.words} as tol3d design found it: {family.order} {teeth}, ratio {candidate.ratio:.10g},"
     yield f"# driven at the {drive.input}, {drive.held} held, output {drive.output}."
     yield f"scene: {family.words} {teeth.replace('/', ' ')}"
     yield ""
 
 
-def _gears(own: Candidate) -> Iterator[tuple[str, int, bool]]:
+def _gears(candidate: Candidate) -> Iterator[tuple[str, int, bool]]:
     """Name, teeth, whether it is a ring: each gear once."""
-    for mesh in own.own.teeth.meshes:
+    for mesh in candidate.own.teeth.meshes:
         yield mesh.central, mesh.teeth, mesh.internal
-    for step, teeth in enumerate(own.own.teeth.steps):
-        yield step_name(own.own.teeth, step), teeth, False
+    for step, teeth in enumerate(candidate.own.teeth.steps):
+        yield step_name(candidate.own.teeth, step), teeth, False
 
 
-def _parts(own: Candidate) -> Iterator[str]:
-    rack = own.task.rack
+def _parts(candidate: Candidate) -> Iterator[str]:
+    rack = candidate.task.rack
     width, module = Quantity(FACE_WIDTH * rack.module, "mm"), Quantity(rack.module, "mm")
     angle = Quantity(round(math.degrees(rack.pressure_angle), 12), "deg")
     yield "parts:  # face widths are a guess"
-    for name, teeth, is_ring in _gears(own):
+    for name, teeth, is_ring in _gears(candidate):
         kind = "internal_gear" if is_ring else "spur_gear"
-        shift = round(own.own.shifts[name], SHIFT_DIGITS) + 0.0
+        shift = round(candidate.own.shifts[name], SHIFT_DIGITS) + 0.0
         shifted = f", profile_shift: {shift:.{SHIFT_DIGITS}f}".rstrip("0").rstrip(".") if shift else ""
         yield (
             f"  {name}: {{kind: {kind}, teeth: {teeth}, module: {module}, pressure_angle: {angle}, "
             f"face_width: {width}{shifted}}}"
         )
-    steps = ", ".join(step_name(own.own.teeth, step) for step in range(len(own.own.teeth.steps)))
+    steps = ", ".join(step_name(candidate.own.teeth, step) for step in range(len(candidate.own.teeth.steps)))
     yield f"  {PLANET}: {{kind: planet, gears: [{steps}]}}"
     yield f"  {CARRIER}: {{kind: planet_carrier}}"
     yield ""
 
 
-def _tolerances(own: Candidate) -> Iterator[str]:
+def _tolerances(candidate: Candidate) -> Iterator[str]:
     yield "tolerances:  # a guess: without thinner teeth the set cannot turn"
-    for name, _, _ in _gears(own):
+    for name, _, _ in _gears(candidate):
         yield f"  {name} thinning: {{kind: tooth_thickness, of: {name}, measured: normal, distribution: {THINNING}}}"
     yield ""
 
 
-def _move(own: Candidate) -> Iterator[str]:
-    drive, teeth = own.task.drive, own.own.teeth
+def _move(candidate: Candidate) -> Iterator[str]:
+    drive, teeth = candidate.task.drive, candidate.own.teeth
     meshes = ", ".join(f"{mesh.central}: {step_name(teeth, mesh.step)}" for mesh in teeth.meshes)
     yield "moves:"
     yield "  planetary set:"
     yield "    kind: planetary"
     yield f"    planet: {PLANET}"
-    yield f"    planets: {own.task.planets}"
+    yield f"    planets: {candidate.task.planets}"
     yield f"    carrier: {CARRIER}"
     yield f"    meshes: {{{meshes}}}"
-    yield f"    centre_distance: {Quantity(round(own.own.centre_distance, SHIFT_DIGITS), 'mm')}"
+    yield f"    centre_distance: {Quantity(round(candidate.own.centre_distance, SHIFT_DIGITS), 'mm')}"
     yield f"    held: {drive.held}"
     yield f"    input: {drive.input}"
     yield f"    output: {drive.output}"
@@ -176,10 +179,10 @@ class MeshColumn:
         return mesh_efficiency(self.of, self.friction, kind)
 
 
-def mesh_table(own: Candidate) -> Table:
+def mesh_table(candidate: Candidate) -> Table:
     """A column for each mesh of a candidate."""
-    names = [f"{mesh.mesh.central} – {step_name(own.own.teeth, mesh.mesh.step)}" for mesh in own.own.meshes]
-    columns = [MeshColumn(mesh, own.task.friction) for mesh in own.own.meshes]
+    names = [f"{mesh.mesh.central} – {step_name(candidate.own.teeth, mesh.mesh.step)}" for mesh in candidate.own.meshes]
+    columns = [MeshColumn(mesh, candidate.task.friction) for mesh in candidate.own.meshes]
     return side_by_side("mesh", zip(names, columns, strict=True))
 
 
@@ -203,20 +206,20 @@ def _notes(found: Found, wish: Wish) -> Iterator[str]:
         yield f"{found.left} further sets of that ratio can be assembled, and are not judged: --most shows more"
 
 
-def _own_notes(own: Candidate) -> Iterator[str]:
-    teeth, drive, friction = own.own.teeth, own.task.drive, own.task.friction
-    shared = own.own.mesh_efficiencies(friction, "equal shares")
+def _own_notes(candidate: Candidate) -> Iterator[str]:
+    teeth, drive, friction = candidate.own.teeth, candidate.task.drive, candidate.task.friction
+    shared = candidate.own.mesh_efficiencies(friction, "equal shares")
     pair = [efficiency(teeth, shared, each) for each in (drive, drive.reversed)]
     yield f"with equal shares of the load: forward {_words(pair[0])}, backward {_words(pair[1])}"
     if len(teeth.meshes) == THREE_MESHES:
-        published = published_efficiencies(teeth, MeshEfficiencies(*own.own.mesh_efficiencies(friction).values()))
-        off = abs(published.forward - own.forward)
-        if own.backward > 0.0:
-            off = max(off, abs(published.backward - own.backward))
+        published = published_efficiencies(teeth, MeshEfficiencies(*candidate.own.mesh_efficiencies(friction).values()))
+        off = abs(published.forward - candidate.forward)
+        if candidate.backward > 0.0:
+            off = max(off, abs(published.backward - candidate.backward))
         agree = f"agree within {AGREEMENT:g}" if off <= AGREEMENT else f"are {off:.1e} apart"
         yield f"the published closed form of the set and the equilibrium of its torques {agree}"
-    if any(max(mesh.contact_ratios) > 1.0 or min(mesh.contact_ratios) < 0.0 for mesh in own.own.meshes):
-        yield f"the published E is too large for {_beyond(own.own.meshes)}: see docs/planetary.md"
+    if any(max(mesh.contact_ratios) > 1.0 or min(mesh.contact_ratios) < 0.0 for mesh in candidate.own.meshes):
+        yield f"the published E is too large for {_beyond(candidate.own.meshes)}: see docs/planetary.md"
 
 
 def _words(value: float) -> str:
@@ -226,5 +229,5 @@ def _words(value: float) -> str:
 def _beyond(meshes: Sequence[WorkingMesh]) -> str:
     """Meshes whose path does not lie within a base pitch on both sides of the pitch point."""
     return " and ".join(
-        own.mesh.central for own in meshes if max(own.contact_ratios) > 1.0 or min(own.contact_ratios) < 0.0
+        mesh.mesh.central for mesh in meshes if max(mesh.contact_ratios) > 1.0 or min(mesh.contact_ratios) < 0.0
     )

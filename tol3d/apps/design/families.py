@@ -114,7 +114,7 @@ def _beside_compound(sun: int, teeth: Teeth) -> tuple[Places, Array]:
 
 def _chosen(right: NDArray[np.bool_], *counts: Places) -> Places:
     """Valid places of a grid, (gears, sets)."""
-    return np.stack([own[right] for own in np.broadcast_arrays(*counts)])
+    return np.stack([broadcast_array[right] for broadcast_array in np.broadcast_arrays(*counts)])
 
 
 WOLFROM: Final = Family("3K set", "S/P1/R1/P2/R2", Drive("sun", "ring 2", "ring 1"), wolfrom, _beside_3k)

@@ -107,12 +107,12 @@ class ShiftedSet:
     @property
     def shifts(self) -> Mapping[str, float]:
         """x of each gear: central gears by their names, then the planets' steps."""
-        central = {own.mesh.central: own.central_shift for own in self.meshes}
+        central = {mesh.mesh.central: mesh.central_shift for mesh in self.meshes}
         return central | {step_name(self.teeth, k): shift for k, shift in enumerate(self.planet_shifts)}
 
     def mesh_efficiencies(self, friction: float, sharing: Sharing = "formula") -> Mapping[str, float]:
         """Efficiency of each mesh, by its central gear."""
-        return {own.mesh.central: mesh_efficiency(own, friction, sharing) for own in self.meshes}
+        return {mesh.mesh.central: mesh_efficiency(mesh, friction, sharing) for mesh in self.meshes}
 
     def planet_gap(self, planets: int) -> float:
         """Between the tips of neighbouring planets [mm]."""
@@ -133,7 +133,7 @@ class ShiftedSet:
 
     def _undercut_margins(self) -> Iterator[Margin]:
         shifts = self.shifts
-        teeth = {own.central: own.teeth for own in self.teeth.meshes if not own.internal}
+        teeth = {mesh.central: mesh.teeth for mesh in self.teeth.meshes if not mesh.internal}
         teeth |= {step_name(self.teeth, k): count for k, count in enumerate(self.teeth.steps)}
         for name, count in teeth.items():
             least = least_shift(count, self.rack)
@@ -141,14 +141,14 @@ class ShiftedSet:
 
     def _mesh_margins(self, limits: Limits) -> Iterator[Margin]:
         m = self.rack.module
-        for own in self.meshes:
-            name, planet = own.mesh.central, step_name(self.teeth, own.mesh.step)
+        for mesh in self.meshes:
+            name, planet = mesh.mesh.central, step_name(self.teeth, mesh.mesh.step)
             for gear, mate, thick, clear, involute in zip(
                 (name, planet),
                 (planet, name),
-                own.tip_thicknesses,
-                own.tip_clearances,
-                own.involute_margins,
+                mesh.tip_thicknesses,
+                mesh.tip_clearances,
+                mesh.involute_margins,
                 strict=True,
             ):
                 yield Margin(f"tip thickness of {gear}", thick / m, limits.tip_thickness, "modules")
@@ -156,9 +156,9 @@ class ShiftedSet:
                 yield Margin(
                     f"contact of {gear} with {mate} off its fillet, along the path", involute / m, APART, "modules"
                 )
-            yield Margin(f"contact ratio of {name} and {planet}", own.contact_ratio, limits.contact_ratio, "")
-            if own.mesh.internal:
-                apart = min(own.tip_interference_margin, NO_CONTACT) * own.mesh.teeth / 2
+            yield Margin(f"contact ratio of {name} and {planet}", mesh.contact_ratio, limits.contact_ratio, "")
+            if mesh.mesh.internal:
+                apart = min(mesh.tip_interference_margin, NO_CONTACT) * mesh.mesh.teeth / 2
                 yield Margin(f"tips of {planet} past those of {name}, as they leave", apart, APART, "modules")
 
     def worst(self, limits: Limits, planets: int) -> Margin:
@@ -179,30 +179,30 @@ def step_name(teeth: ToothSet, step: int) -> str:
 FACE_WIDTH = 10.0  # modules; it decides nothing here
 
 
-def made_pair(own: WorkingMesh) -> SpurPair | InternalPair:
+def made_pair(working_mesh: WorkingMesh) -> SpurPair | InternalPair:
     """The gears of a mesh at its centre distance: the sun drives its planet, a planet its ring.
 
     Raises:
         GeometryError: a gear cannot be made.
     """
-    rack, mesh = own.rack, own.mesh
+    rack, mesh = working_mesh.rack, working_mesh.mesh
     common = (rack.module, rack.pressure_angle, FACE_WIDTH * rack.module)
     factors = {"addendum": rack.addendum, "dedendum": rack.dedendum}
-    planet = SpurGear(mesh.planet_teeth, *common, profile_shift=own.planet_shift, **factors)
+    planet = SpurGear(mesh.planet_teeth, *common, profile_shift=working_mesh.planet_shift, **factors)
     if mesh.internal:
-        ring = InternalGear(mesh.teeth, *common, profile_shift=own.central_shift, **factors)
-        return InternalPair(planet, ring, own.centre_distance)
-    sun = SpurGear(mesh.teeth, *common, profile_shift=own.central_shift, **factors)
-    return SpurPair(sun, planet, own.centre_distance)
+        ring = InternalGear(mesh.teeth, *common, profile_shift=working_mesh.central_shift, **factors)
+        return InternalPair(planet, ring, working_mesh.centre_distance)
+    sun = SpurGear(mesh.teeth, *common, profile_shift=working_mesh.central_shift, **factors)
+    return SpurPair(sun, planet, working_mesh.centre_distance)
 
 
-def refuse_interference(own: ShiftedSet) -> None:
+def refuse_interference(shifted_set: ShiftedSet) -> None:
     """Raise unless all its gears can be made and run together.
 
     Raises:
         GeometryError: with the mesh, the radii and the remedy.
     """
-    for mesh in own.meshes:
+    for mesh in shifted_set.meshes:
         try:
             made_pair(mesh).refuse_interference()
         except GeometryError as error:

@@ -65,13 +65,13 @@ def _draft(words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out
     from tol3d.study.system import starters_of
 
     kinds = {starter.name for mechanism in all_mechanisms() for starter in starters_of(mechanism)}
-    if both := next((own for own in words if own in kinds and not Path(own).exists()), None):
+    if both := next((word for word in words if word in kinds and not Path(word).exists()), None):
         raise InputError(f"expected a kind of system or --from with STEP files, got both: {both!r} is a kind")
     if len(seats) != len(faces):
         raise InputError(f"--seat: expected an --on for each, got {len(seats)} and {len(faces)}")
-    contents = [read_file(Path(own)) for own in words]
+    contents = [read_file(Path(word)) for word in words]
     names = [own.path.name for own in contents]
-    if twice := next((own for own in names if names.count(own) > 1), None):
+    if twice := next((name for name in names if names.count(name) > 1), None):
         raise InputError(f"{twice}: expected files of different names, got two")
     target = out or Path(Path(words[0]).stem + ".yaml")
     _refuse_there(target, force)

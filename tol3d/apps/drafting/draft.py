@@ -53,13 +53,13 @@ class Draft:
 
     def scene(self) -> tuple[str, dict[int, Entry]]:
         """The text, and the entry of each line of it."""
-        body = [own.entry() for own in self.parts]
+        body = [part.entry() for part in self.parts]
         return Scene(self.head(), LAW, [*body, *self.entries], [*self.tail()]).written()
 
     def head(self) -> list[str]:
         """Heading of the scene."""
-        files = [shown(own.file.content.path.name) for own in self.files]
-        name = cleaned(" and ".join(own.rpartition(".")[0] or own for own in files), "/\\:") or "from STEP"
+        files = [shown(file.file.content.path.name) for file in self.files]
+        name = cleaned(" and ".join(file.rpartition(".")[0] or file for file in files), "/\\:") or "from STEP"
         return [
             f"# Drafted by tol3d new --from {comment(' '.join(files))}; yours to edit. What the files do not say is",
             "# marked `guess`; what of them the scene lacks is listed at its end. `tol3d check` says what it means.",
@@ -69,28 +69,28 @@ class Draft:
     def tail(self) -> Iterator[str]:
         """The study, and the losses and omissions of the files, so that counts add up."""
         yield from ("", f"study: {{trials: {TRIALS}, seed: 1}}")
-        for own in self.files:
-            yield from self.told(own)
+        for file in self.files:
+            yield from self.told(file)
 
     def notes(self) -> Iterator[str]:
         """Notes to read before the scene: counts, and parts that nothing places."""
         for line in self.tail():
             if line.startswith("# Of the "):
                 yield line.removeprefix("# ")
-        for own in self.entries:
-            if own.section == "moves" and own.stands and ALONE in own.wording.comment:
-                part = own.wording.lines[0].partition("part: ")[2].removesuffix("}")
+        for entry in self.entries:
+            if entry.section == "moves" and entry.stands and ALONE in entry.wording.comment:
+                part = entry.wording.lines[0].partition("part: ")[2].removesuffix("}")
                 yield f"{part}: {ALONE}, and is fixed there; --seat PART.FACE --on PART.FACE lays it on another"
 
     def told(self, own: ReadText) -> Iterator[str]:
         """Outcome of each tolerance and dimension of a file, in comments."""
-        drawings = [each.drawing for each in self.parts if not each.like and each.file is own.file]
-        reasons = {key: why for each in drawings for key, why in each.reasons.items()}
-        doubled = {key: why for each in drawings for key, why in each.doubled.items()}
+        drawings = [part.drawing for part in self.parts if not part.like and part.file is own.file]
+        reasons = {key: why for drawing in drawings for key, why in drawing.reasons.items()}
+        doubled = {key: why for drawing in drawings for key, why in drawing.doubled.items()}
         lost: list[str] = []
         left: list[str] = []
         for tolerance, meaning in zip(own.text.tolerances, own.meanings.all, strict=True):
-            made = [each for each in self.entries if tolerance.id in (each.source, *each.below)]
+            made = [entry for entry in self.entries if tolerance.id in (entry.source, *entry.below)]
             standing = [each for each in made if each.stands]
             words = [doubled.get(tolerance.id, ""), *(word for each in standing for word in each.losses)]
             why = "; ".join(dict.fromkeys(filter(None, words)))
@@ -117,12 +117,14 @@ class Draft:
 
     def dimensions_told(self, own: ReadText, reasons: dict[int, str]) -> Iterator[str]:
         """Outcome of each dimension of a file."""
-        said = {each.source for each in self.entries if each.source is not None and each.stands}
+        said = {entry.source for entry in self.entries if entry.source is not None and entry.stands}
         left = []
         for dimension in own.text.dimensions:
             if dimension.id in said:
                 continue
-            refused = next((each.refused for each in self.entries if each.source == dimension.id and each.refused), "")
+            refused = next(
+                (entry.refused for entry in self.entries if entry.source == dimension.id and entry.refused), ""
+            )
             why = (
                 refused
                 or reasons.get(dimension.id)
@@ -144,10 +146,12 @@ class Draft:
             yield from left
 
 
-def unread(own: ReadText, what: str) -> list[str]:
+def unread(read_text: ReadText, what: str) -> list[str]:
     """The tolerances or dimensions of a file that cannot be read, each with the reason, for the list of omissions."""
-    read = {each.id for each in own.text.tolerances} | {each.id for each in own.text.dimensions}
-    lost = [each for each in own.text.remarks if each.what == what and each.id not in read]
+    read = {tolerance.id for tolerance in read_text.text.tolerances} | {
+        dimension.id for dimension in read_text.text.dimensions
+    }
+    lost = [remark for remark in read_text.text.remarks if remark.what == what and remark.id not in read]
     return [f"#{each.id}: {comment(each.why, LONGEST)}" for each in lost]
 
 
@@ -163,11 +167,11 @@ def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
     for part in parts:
         if not part.like:
             part.drawing.read()
-    for own in seats:
-        part, face = found(parts, own.seat, "--seat")
-        other, there = found(parts, own.on, "--on")
+    for seat in seats:
+        part, face = found(parts, seat.seat, "--seat")
+        other, there = found(parts, seat.on, "--on")
         if part is other:
-            raise InputError(f"--on: expected a face of another part than {shown(own.seat)!r}, got {shown(own.on)!r}")
+            raise InputError(f"--on: expected a face of another part than {shown(seat.seat)!r}, got {shown(seat.on)!r}")
         seated(part, face, other, there)
     said = [entry for part in parts if not part.like for entry in part.drawing.entries]
     placed = fixture(parts[0], names) if len(parts) == 1 else [*moves(parts, names), *between(parts, names)]
@@ -202,7 +206,7 @@ def something(parts: Sequence[DraftedPart], entries: Sequence[Entry], names: Nam
     for part in parts:
         if not part.features.groups:
             part.features.name(part.features.largest()[0])
-    if any(own.section == "measures" for own in entries):
+    if any(entry.section == "measures" for entry in entries):
         return
     first, last = parts[0], parts[-1]
     faces = first.features.largest()
@@ -306,8 +310,8 @@ def scene_from(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> t
     drafted = draft(contents, seats)
     with tempfile.TemporaryDirectory(prefix="tol3d-new-") as made:
         folder = Path(made)
-        for own in contents:
-            (folder / own.path.name).write_bytes(own.content)
+        for content in contents:
+            (folder / content.path.name).write_bytes(content.content)
 
         def check(text: str) -> None:
             (folder / SCENE).write_text(text, encoding="utf-8")

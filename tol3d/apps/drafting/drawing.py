@@ -74,7 +74,9 @@ class Drawing(Drawn):
     @cached_property
     def dimensions(self) -> tuple[Dimension, ...]:
         """Dimensions of this part."""
-        return tuple(each for each in self.text.dimensions if self.text.product(each.features[0]) == self.product)
+        return tuple(
+            dimension for dimension in self.text.dimensions if self.text.product(dimension.features[0]) == self.product
+        )
 
     def read(self) -> None:
         """Make all entries."""
@@ -244,7 +246,7 @@ class Drawing(Drawn):
         below = [other for each, other in self.tolerances if each.above == tolerance.id and other.kind == "profile"]
         if meaning.kind != "profile" or not below:
             return []
-        return [own for own in groups if own.name not in self.located and own.kind != "cone"]
+        return [group for group in groups if group.name not in self.located and group.kind != "cone"]
 
     def left_to_all(self) -> list[Group]:
         """Features that a tolerance of the whole part locates: the largest planes that nothing else names.
@@ -252,9 +254,9 @@ class Drawing(Drawn):
         Raises:
             StepError: there is none.
         """
-        of_them = [each.feature.faces for each, _ in self.tolerances] + [each.faces for each in self.text.datums]
+        of_them = [each.feature.faces for each, _ in self.tolerances] + [datum.faces for datum in self.text.datums]
         taken = {face for faces in of_them for face in faces}
-        found = [own for own in self.features.part.features if own.kind == "plane" and not own.loose]
+        found = [feature for feature in self.features.part.features if feature.kind == "plane" and not feature.loose]
         left = [own for own in found if not taken & {*own.faces} and self.features.named(own) is None]
         if not left:
             raise StepError("of the whole part: other tolerances and datums name each flat face")
@@ -267,13 +269,13 @@ class Drawing(Drawn):
             StepError: the scene has no feature for one.
         """
         said, plain, read = [], [], []
-        for each in tolerance.datums:
-            letters = [own.letter for own in each.references]
-            if missing := [own for own in letters if own not in self.datums]:
+        for datum in tolerance.datums:
+            letters = [reference.letter for reference in datum.references]
+            if missing := [letter for letter in letters if letter not in self.datums]:
                 raise StepError(f"datum {', '.join(missing)} is no feature of this scene")
-            name = scalar("-".join(self.datums[own] for own in letters))
-            plain.append(f"{{feature: {name}, simulator: pattern}}" if self.meanings.is_pattern(each) else name)
-            words = sorted({word for own in each.references for word in own.modifiers} & MATERIAL)
+            name = scalar("-".join(self.datums[letter] for letter in letters))
+            plain.append(f"{{feature: {name}, simulator: pattern}}" if self.meanings.is_pattern(datum) else name)
+            words = sorted({word for reference in datum.references for word in reference.modifiers} & MATERIAL)
             boundary = "lmb" if words and "least" in words[0] else "mmb"
             said.append(f"{{feature: {name}, {boundary}: random}}" if words else plain[-1])
             read.append(f"{{feature: {name}, {boundary}: least}}" if words else plain[-1])

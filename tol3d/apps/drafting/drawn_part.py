@@ -91,7 +91,7 @@ def piece(tolerance: Tolerance, kind: str) -> str:
     if kind != "flatness" or own.area == "circular":
         return f", per: {length(own.size.value)}"
     sides = (own.size, own.second or own.size)
-    return f", per: [{', '.join(length(each.value) for each in sides)}]"
+    return f", per: [{', '.join(length(side.value) for side in sides)}]"
 
 
 def limited(meanings: Meanings, tolerance: Tolerance, group: Group) -> Array:
@@ -108,7 +108,7 @@ def limited(meanings: Meanings, tolerance: Tolerance, group: Group) -> Array:
 
 def modifier_of(tolerance: Tolerance) -> str:
     """The material modifier of a tolerance as a scene has it; "" where it has none."""
-    words = [own for own in tolerance.modifiers if own in MATERIAL]
+    words = [modifier for modifier in tolerance.modifiers if modifier in MATERIAL]
     return "" if not words else "lmc" if "least" in words[0] else "mmc"
 
 
@@ -137,7 +137,7 @@ def take_size(drawing: Drawn, dimension: Dimension) -> None:
     for group in groups:
         if group.size is None or group.name in drawing.sizes:
             continue
-        least, most = (per * own for own in dimension.limits)
+        least, most = (per * limit for limit in dimension.limits)
         drawing.sizes[group.name] = size_entry(drawing, dimension, group, least - group.size, most - group.size)
     if round_ones and not groups:
         drawing.reasons[dimension.id] = "the size of what no tolerance of this scene is of"
@@ -145,10 +145,10 @@ def take_size(drawing: Drawn, dimension: Dimension) -> None:
 
 def slot_of(drawing: Drawn, dimension: Dimension) -> Group | None:
     """The slot or tab whose width a dimension is."""
-    faces = {face for each in dimension.features for face in each.faces}
+    faces = {face for feature in dimension.features for face in feature.faces}
     for group in drawing.features.groups:
         walls = [set(own.faces) for own in group.slot]
-        if len(walls) == 2 and all(faces & own for own in walls) and faces <= walls[0] | walls[1]:
+        if len(walls) == 2 and all(faces & wall for wall in walls) and faces <= walls[0] | walls[1]:
             return group
     return None
 
@@ -183,8 +183,8 @@ def take_distance(drawing: Drawn, dimension: Dimension) -> None:
     if "distance" not in dimension.kind or slot_of(drawing, dimension) is not None:
         return
     try:
-        sides = [drawing.features.of_faces(each.faces) for each in dimension.features]
-        if [len(own) for own in sides] != [1, 1] or {own[0].kind for own in sides} != {"plane"}:
+        sides = [drawing.features.of_faces(feature.faces) for feature in dimension.features]
+        if [len(side) for side in sides] != [1, 1] or {side[0].kind for side in sides} != {"plane"}:
             raise StepError("a distance of other features than two faces")
         first, second = sides[0][0], sides[1][0]
         if abs(abs(float(np.dot(first.direction, second.direction))) - 1.0) > SQUARE:
@@ -224,5 +224,5 @@ def distance_entry(drawing: Drawn, dimension: Dimension, first: FoundFeature, se
 def unit_of(dimension: Dimension) -> str:
     """The unit in which the file has a dimension, where that is not mm."""
     measures = (dimension.nominal, dimension.least, dimension.most)
-    unit = next((own.unit.name for own in measures if own is not None), "mm")
+    unit = next((measure.unit.name for measure in measures if measure is not None), "mm")
     return "" if unit == "mm" else f" {comment(unit)}"

@@ -58,7 +58,7 @@ class Entry:
     @property
     def stands(self) -> bool:
         """True if it is in the scene."""
-        return not self.refused and all(own.stands for own in self.needs)
+        return not self.refused and all(need.stands for need in self.needs)
 
     @property
     def wording(self) -> Wording:
@@ -107,7 +107,7 @@ class Scene:
         by_line: dict[int, Entry] = {}
         anchor = f"&zones {self.law}"
         for section in SECTIONS:
-            standing = [own for own in self.entries if own.section == section and own.stands]
+            standing = [entry for entry in self.entries if entry.section == section and entry.stands]
             if not standing:
                 continue
             lines += ["", f"{section}:"]

@@ -92,7 +92,7 @@ class Features:
             if own.kind not in USABLE:
                 raise StepError(f"a {own.kind} is not simulated")
             if own.kind == "plane" and here and len(here) < len(own.faces):
-                known = next((each for each in self.planes() if {*each.faces} & {*here}), None)
+                known = next((plane for plane in self.planes() if {*plane.faces} & {*here}), None)
                 own = known or replace(self.part.shell.made_of(here), on=own.on)
             found.append(own)
         if not found:
@@ -111,7 +111,7 @@ class Features:
         Raises:
             StepError: there is none.
         """
-        usable = [own for own in self.part.features if own.kind in USABLE and not own.loose]
+        usable = [feature for feature in self.part.features if feature.kind in USABLE and not feature.loose]
         if not usable:
             raise StepError(f"{shown(self.part.name)}: expected a flat or round face, found free forms alone")
         return sorted(usable, key=lambda own: -own.area)[:2]
@@ -132,7 +132,7 @@ class Features:
     def slot(self, walls: Sequence[FoundFeature], wish: str = "") -> Group:
         """The slot or tab between two walls, by its numbers."""
         for group in self.groups:
-            if group.slot and {own.faces for own in group.slot} == {own.faces for own in walls}:
+            if group.slot and {own.faces for own in group.slot} == {wall.faces for wall in walls}:
                 return group
         first, second = walls
         there = np.subtract(second.at, first.at)
@@ -146,7 +146,7 @@ class Features:
             f"{{kind: slot, at: {place(middle)}, normal: {direction(first.direction)}, extent: [{sides}], "
             f"width: {length(abs(width))}{', tab: true' if tab else ''}, along: {direction(first.x)}}}"
         )
-        faces = ", ".join(f"#{own}" for each in walls for own in each.faces)
+        faces = ", ".join(f"#{face}" for wall in walls for face in wall.faces)
         middle_plane = replace(first, at=(float(middle[0]), float(middle[1]), float(middle[2])))
         made = Group(name, (middle_plane,), line, (first, second), f"between {faces}")
         self.groups.append(made)
@@ -196,7 +196,9 @@ class Features:
     def kind_name(self, kind: str) -> str:
         """A name for the next feature of a kind: "hole 3"."""
         count = 1
-        while self.names.clashes(f"{kind} {count}", 1) or any(f"{kind} {count} 1" in own.names for own in self.groups):
+        while self.names.clashes(f"{kind} {count}", 1) or any(
+            f"{kind} {count} 1" in group.names for group in self.groups
+        ):
             count += 1
         return f"{kind} {count}"
 
@@ -220,7 +222,7 @@ class Features:
             at = first.at if round_one else first.on
             near = (round(at[0], 4) + 0.0, round(at[1], 4) + 0.0, round(at[2], 4) + 0.0)
             tries.append((line_of(first), Selector(kind=first.kind, diameter=size if round_one else None, near=near)))
-        wanted = [own.faces for own in members]
+        wanted = [member.faces for member in members]
         for line, selector in tries:
             try:
                 if [each.faces for each in selected(self.part, selector)] == wanted:
@@ -231,16 +233,16 @@ class Features:
 
     def by_faces(self, member: FoundFeature) -> str:
         """A feature by its faces alone."""
-        whole = any(own.faces == member.faces for own in self.part.features)
+        whole = any(feature.faces == member.faces for feature in self.part.features)
         if whole:
             return f'{{face: "#{member.faces[0]}"}}'
-        return "{faces: [" + ", ".join(f'"#{own}"' for own in member.faces) + "]}"
+        return "{faces: [" + ", ".join(f'"#{face}"' for face in member.faces) + "]}"
 
 
 def faces_of(member: FoundFeature) -> str:
     """The numbers of its faces, the first few."""
     more = ", …" if len(member.faces) > 4 else ""
-    return ", ".join(f"#{own}" for own in member.faces[:4]) + more
+    return ", ".join(f"#{face}" for face in member.faces[:4]) + more
 
 
 def described(members: Sequence[FoundFeature]) -> str:

@@ -41,8 +41,8 @@ def datum_system(part: DraftedPart) -> list[Group]:
     groups = {name: group for group in part.features.groups for name in group.names}
     systems: Counter[tuple[str, ...]] = Counter()
     for tolerance, _ in drawing.tolerances:
-        letters = tuple(own.letters for own in tolerance.datums)
-        if letters and all(drawing.datums.get(own) in groups for own in letters):  # a pattern is several
+        letters = tuple(datum.letters for datum in tolerance.datums)
+        if letters and all(drawing.datums.get(letter) in groups for letter in letters):  # a pattern is several
             systems[letters] += 1
     if not systems:
         return []

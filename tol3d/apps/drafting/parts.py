@@ -123,28 +123,28 @@ def drafted_parts(files: Sequence[ReadText], names: Names) -> Iterator[DraftedPa
     count = sum(len(own.file.uses) for own in files)
     if count > MOST_PARTS:
         raise StepError(f"expected at most {MOST_PARTS} parts in a scene, got {count}")
-    for own in files:
+    for file in files:
         first: dict[int, DraftedPart] = {}
-        for use in own.file.uses:
-            made = drafted_part(own, use, names, first.get(use.product))
+        for use in file.file.uses:
+            made = drafted_part(file, use, names, first.get(use.product))
             first.setdefault(use.product, made)
             yield made
 
 
-def drafted_part(own: ReadText, use: Use, names: Names, like: DraftedPart | None) -> DraftedPart:
+def drafted_part(read_text: ReadText, use: Use, names: Names, like: DraftedPart | None) -> DraftedPart:
     """The part of one use."""
-    part = next(each for each in own.file.parts if each.body.product == use.product)
-    single = len(own.file.uses) == 1
-    name = names.new(use.path.rpartition("/")[2], own.file.content.path.stem)
+    part = next(each for each in read_text.file.parts if each.body.product == use.product)
+    single = len(read_text.file.uses) == 1
+    name = names.new(use.path.rpartition("/")[2], read_text.file.content.path.stem)
     name = name if "." not in name else names.new(name.replace(".", " "), "part")
     features = like.features if like is not None else Features(part)
     pose = np.eye(4) if single else posed(use)
     selection = "" if single else f"use: {scalar(use.path)}"
-    if single and len(own.file.parts) > 1:
+    if single and len(read_text.file.parts) > 1:
         selection = f"product: {scalar(part.name)}"
-    drawing = like.drawing if like is not None else Drawing(own.text, own.meanings, name, features, names)
+    drawing = like.drawing if like is not None else Drawing(read_text.text, read_text.meanings, name, features, names)
     return DraftedPart(
-        name, own.file, selection, pose, not single, features, drawing, "" if like is None else like.name
+        name, read_text.file, selection, pose, not single, features, drawing, "" if like is None else like.name
     )
 
 

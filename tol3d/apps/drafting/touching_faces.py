@@ -145,9 +145,13 @@ def seats(part: DraftedPart, other: DraftedPart) -> list[Coaxial]:
     return sorted(found, key=lambda each: -min(each.own.length, each.there.length))
 
 
-def cone_of(own: FoundFeature) -> Cone:
+def cone_of(found_feature: FoundFeature) -> Cone:
     """A cone as the model has it."""
-    return Cone(own.length, inner=own.outside, diameters=(2 * own.radii[0], 2 * own.radii[1]))
+    return Cone(
+        found_feature.length,
+        inner=found_feature.outside,
+        diameters=(2 * found_feature.radii[0], 2 * found_feature.radii[1]),
+    )
 
 
 def same_line(first: Coaxial, second: Coaxial) -> bool:
@@ -189,22 +193,21 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], names: Names) -> Iter
     axes = [own for other in others for own in coaxial(part, other)]
     for seat in [own for other in others for own in seats(part, other)][:1]:
         normals.append(seat.axis)  # a face across it takes nothing, nor does what lies on its line
-        axes = [own for own in axes if not same_line(own, seat)]
+        axes = [axis for axis in axes if not same_line(axis, seat)]
         relations.append(
             f"  - {{kind: coincident, from: {feature(part, seat.own)}, to: {feature(seat.other, seat.there)}}}"
         )
     contacts = [own for other in others for own in facing(part, other) if own.gap < TOUCHING]
-    for own in sorted(contacts, key=lambda each: -each.area):
-        normal = own.other.along(own.there.direction)
+    for contact in sorted(contacts, key=lambda each: -each.area):
+        normal = contact.other.along(contact.there.direction)
         if any(abs(float(normal @ known)) > 0.9 for known in normals):
             continue
         if normals and axes:
             break  # pins and bolts hold the rest
         normals.append(normal)
-        relations.append(
-            f"  - {{kind: coincident, from: {feature(part, own.face)}, to: {feature(own.other, own.there)}}}"
-        )
-    square = [own for own in axes if not normals or abs(float(own.axis @ normals[0])) > 1.0 - PARALLEL]
+        moving, target = feature(part, contact.face), feature(contact.other, contact.there)
+        relations.append(f"  - {{kind: coincident, from: {moving}, to: {target}}}")
+    square = [axis for axis in axes if not normals or abs(float(axis.axis @ normals[0])) > 1.0 - PARALLEL]
     name = scalar(names.new(f"{part.name} placed", "placed"))
     if not relations and not square:
         yield Entry("moves", name, [Wording(fixed(part).lines, f"guess: {ALONE}")])
@@ -227,9 +230,9 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], names: Names) -> Iter
     yield Entry("moves", name, [*ways, fixed(part)])
 
 
-def feature(part: DraftedPart, own: FoundFeature) -> str:
+def feature(part: DraftedPart, found_feature: FoundFeature) -> str:
     """A feature with its part, selected if it was not."""
-    return part.of(part.features.name(own))
+    return part.of(part.features.name(found_feature))
 
 
 def playing(own: Coaxial) -> str | None:
@@ -256,8 +259,8 @@ def largest_bolt(part: DraftedPart, hole: FoundFeature) -> float:
         if each.kind == "position" and meaning.how != "left out" and each.magnitude and faces & {*each.feature.faces}
     ]
     sizes = [
-        each.limits[0] for each in drawing.dimensions
-        if each.limits and "diameter" in each.kind and faces & {*each.features[0].faces}
+        dimension.limits[0] for dimension in drawing.dimensions
+        if dimension.limits and "diameter" in dimension.kind and faces & {*dimension.features[0].faces}
     ]  # fmt: skip
     least = min([diameter, *sizes])
     return least - max(zones) if zones else least * (1.0 - BOLT_LESS)

@@ -179,12 +179,12 @@ class _Mixed:
     ) -> None:
         self.low = replace(terms, winding=False, teeth=())
         self._pair, self._cells = pair, cells
-        self._root = np.sqrt(np.concatenate([own.rows for own in cells.values()]) / variance)
+        self._root = np.sqrt(np.concatenate([cell.rows for cell in cells.values()]) / variance)
         self._fixed = np.concatenate([columns(pair, self.low, side, own.at) for side, own in cells.items()])
         self._fixed *= self._root[:, None]
         self._inverse = _inverse(_product(self._fixed, self._fixed))
-        self._left = np.concatenate([own.left for own in cells.values()]) * self._root
-        blocks = {own: self._columns(own) for own in effects}
+        self._left = np.concatenate([cell.left for cell in cells.values()]) * self._root
+        blocks = {effect: self._columns(effect) for effect in effects}
         blocks = {own: block for own, block in blocks.items() if self._stands_out(block)}
         self.effects = list(blocks)
         self._random = np.concatenate(list(blocks.values()), axis=1) if blocks else np.zeros((len(self._left), 0))
@@ -193,17 +193,17 @@ class _Mixed:
         """Powers of each effect's orders, by expectation and maximisation, and what they explain of the cells."""
         every, fixed = np.concatenate([self._fixed, self._random], axis=1), len(self._inverse)
         normal, right = _product(every, every), _product(every, self._left[:, None])[:, 0]
-        ends = np.cumsum([0, *(2 * len(own.orders) for own in self.effects)])
+        ends = np.cumsum([0, *(2 * len(effect.orders) for effect in self.effects)])
         parts = [slice(low, high) for low, high in pairwise(ends.tolist())]
         square = (right[fixed:] / np.diagonal(normal)[fixed:]) ** 2
         values = np.zeros(len(square))
         for _ in range(ROUNDS):
             powers = [square[part].reshape(-1, 2).sum(axis=1) for part in parts]
-            prior = np.concatenate([np.zeros(fixed), *(1.0 / own for own in self._levels(powers))])
+            prior = np.concatenate([np.zeros(fixed), *(1.0 / level for level in self._levels(powers))])
             inverse = _inverse(normal + np.diag(prior))
             values = (inverse @ right)[fixed:]
             square = values**2 + np.diagonal(inverse)[fixed:]
-        sizes = np.cumsum([len(own.rows) for own in self._cells.values()])[:-1]
+        sizes = np.cumsum([len(cell.rows) for cell in self._cells.values()])[:-1]
         explained = np.split(self._random @ values / self._root, sizes)
         return powers, dict(zip(self._cells, explained, strict=True))
 

@@ -93,7 +93,7 @@ class _Change(NamedTuple):
 def _at_the_same_places(ends: Ends, left: Sequence[Array], period: float) -> _Change | None:
     """Change by pairs of rows at the same places, so that no shape of the curve is in it; None if there are too few."""
     windows = (ends.start, ends.end)
-    cells = min(MOST_CELLS, int(min(own.rows.sum() for own in windows)) // 2)
+    cells = min(MOST_CELLS, int(min(window.rows.sum() for window in windows)) // 2)
     if cells <= FEWEST:
         return None
     turned = 2 * math.pi / period

@@ -54,7 +54,7 @@ def plan_rig(specimen: Specimen, rig: Rig, turns: Sequence[float], *, drift: boo
         turns: of the driver.
         drift: whether a linear drift of each side would be fitted along.
     """
-    return tuple(_plan(specimen, rig, own, drift=drift) for own in turns)
+    return tuple(_plan(specimen, rig, turn, drift=drift) for turn in turns)
 
 
 def row_variance(pair: RigPair, rig: Rig) -> float:

@@ -152,10 +152,10 @@ def summary_of(found: Identified, own: SceneMesh) -> IdentifiedSummary:
     )
 
 
-def figure_summary(name: str, own: Figure) -> FigureSummary:
+def figure_summary(name: str, figure: Figure) -> FigureSummary:
     """A figure in its unit."""
     unit, one = UNITS[name]
-    return FigureSummary(value=own.value / one, half_width=own.half_width / one, unit=unit)
+    return FigureSummary(value=figure.value / one, half_width=figure.half_width / one, unit=unit)
 
 
 def alone_figures(own: OneSided) -> Mapping[str, Figure]:
@@ -166,8 +166,8 @@ def alone_figures(own: OneSided) -> Mapping[str, Figure]:
     return found
 
 
-def _arcsec(own: Figure, unit: Unit = "arcsec") -> FigureSummary:
-    return FigureSummary(value=own.value / ARCSEC, half_width=own.half_width / ARCSEC, unit=unit)
+def _arcsec(figure: Figure, unit: Unit = "arcsec") -> FigureSummary:
+    return FigureSummary(value=figure.value / ARCSEC, half_width=figure.half_width / ARCSEC, unit=unit)
 
 
 def _side(found: Identified, side: Side, own: OneSided) -> SideSummary:

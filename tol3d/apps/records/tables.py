@@ -36,12 +36,12 @@ SIGNS: Final = {"um": "µm", "deg": "°", "arcsec": "″"}
 PLAN_DIGITS: Final = 3  # significant ones; a half-width known better says nothing
 
 
-def identified_report(found: Identified, own: SceneMesh) -> Page:
+def identified_report(found: Identified, scene_mesh: SceneMesh) -> Page:
     """Figures, encoders, values held as in the scene, residual, warnings."""
-    title = _title(found, own.scene, own.mesh.name)
+    title = _title(found, scene_mesh.scene, scene_mesh.mesh.name)
     blocks: list[PageItem] = [title, *_read_lines(found), BLANK, _figures(found)]
     blocks += [
-        *map(note, [*_notes(found), *_held(found, own)]),
+        *map(note, [*_notes(found), *_held(found, scene_mesh)]),
         *titled("what the fit leaves, by orders of the driver's turn", _orders(found)),
     ]
     return page(*blocks, *map(warning, found.warnings))
@@ -119,13 +119,13 @@ def _notes(found: Identified) -> Iterator[str]:
         yield "backlash extrapolated to zero torque: B(T) = j + T/k"
 
 
-def _held(found: Identified, own: SceneMesh) -> Iterator[str]:
+def _held(found: Identified, scene_mesh: SceneMesh) -> Iterator[str]:
     pair = found.pair
     yield (
         f"held as the scene has it: base radii, axes parallel and {pair.centre_distance:.4f} mm apart, which makes a "
         f"working angle of {math.degrees(pair.working_angle):.3f}°"
     )
-    if shafts := own.builds.in_bores:
+    if shafts := scene_mesh.builds.in_bores:
         yield (
             f"{', '.join(shafts)}: in bores, which are held at the means of their tolerances; how far apart they "
             "lie in this unit is read as constant backlash"
@@ -149,16 +149,16 @@ def plan_report(plans: Sequence[RigPlan], specimen: Specimen, rig: Rig, scene: s
 
 def plan_table(plans: Sequence[RigPlan]) -> Table:
     """The same as one table."""
-    names = next((list(own.figures) for own in plans if own.figures), [])
-    headings = [Heading(f"{own.turns:g} turn{'' if own.turns == 1 else 's'}") for own in plans]
+    names = next((list(plan.figures) for plan in plans if plan.figures), [])
+    headings = [Heading(f"{plan.turns:g} turn{'' if plan.turns == 1 else 's'}") for plan in plans]
     rows = [
-        Row("rows, both sides", [Shown(f"{own.rows}", own.rows) for own in plans], unit="1"),
-        Row("condition number", [Shown(f"{own.condition:.3g}", own.condition) for own in plans], unit="1"),
+        Row("rows, both sides", [Shown(f"{plan.rows}", plan.rows) for plan in plans], unit="1"),
+        Row("condition number", [Shown(f"{plan.condition:.3g}", plan.condition) for plan in plans], unit="1"),
     ]
     for name in names:
         unit, one = UNITS.get(name, ("arcsec", ARCSEC))
         words = WORDS.get(name, f"{name}, once per turn")
-        cells = [_cell(own, name, one) for own in plans]
+        cells = [_cell(plan, name, one) for plan in plans]
         rows.append(
             Row(
                 f"{words} [±{SIGNS[unit]}]", cells, "bold" if name in ("jmin eccentric", "jmax eccentric") else "", unit
@@ -191,7 +191,7 @@ def _rig_line(specimen: Specimen, rig: Rig) -> Line:
 
 
 def _plan_notes(plans: Sequence[RigPlan]) -> Iterator[str]:
-    short = [f"{own.turns:g}" for own in plans if not own.suffices]
+    short = [f"{plan.turns:g}" for plan in plans if not plan.suffices]
     if short:
         words = "turn does" if short == ["1"] else "turns do"
         yield f"{', '.join(short)} {words} not tell the driver's part from the driven gear's: `identify` refuses them"

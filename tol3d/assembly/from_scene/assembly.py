@@ -80,7 +80,9 @@ def meant(understood: Understood, poses: Mapping[str, Array], pose: str = "") ->
     parts = parts_of(scene, features, understood.frames.made, poses)
     measured = {name: own for name, own in understood.measured.items() if pose in read_at(scene, name)}
     assembly = Assembly(parts, moves, measured, effects.width)
-    shown = tuple(own for own in shown_measures(scene, understood.measured) if own.name in measured)
+    shown = tuple(
+        shown_measure for shown_measure in shown_measures(scene, understood.measured) if shown_measure.name in measured
+    )
     return Meant(assembly, effects.contributors, shown, named_by(scene))
 
 
@@ -129,5 +131,8 @@ def with_held(drawing: Drawing, effects: Effects, frames: DatumFrames) -> Effect
             held[own.name] = "sizes the zone that a measure inspects"
         elif isinstance(own.spec, FormSpec | OrientationSpec) and drawing.of(own.feature, LocationSpec):
             held[own.name] = "narrows another zone"
-    marked = (replace(own, held=held[own.name]) if own.name in held else own for own in effects.contributors)
+    marked = (
+        replace(contributor, held=held[contributor.name]) if contributor.name in held else contributor
+        for contributor in effects.contributors
+    )
     return replace(effects, contributors=tuple(marked))

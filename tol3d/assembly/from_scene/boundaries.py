@@ -79,7 +79,9 @@ def on_gauges(drawing: Drawing, effects: Effects, frames: DatumFrames) -> DatumF
 
 def _with_gauges(drawing: Drawing, frames: DatumFrames) -> Iterator[str]:
     """Datum frames with gauges of their own, those of tolerances first and in their order."""
-    toleranced = {frame_name(*own): shifts_alone(drawing, *own) for own in of_tolerances(drawing)}
+    toleranced = {
+        frame_name(*of_tolerance): shifts_alone(drawing, *of_tolerance) for of_tolerance in of_tolerances(drawing)
+    }
     for name in dict.fromkeys((*toleranced, *frames.specs)):
         if _lying(frames.specs[name]) is not None and not toleranced.get(name, False):
             yield name
@@ -91,7 +93,7 @@ def _floating(frame: DatumFrame, datums: Sequence[DatumSpec]) -> PlainContributo
     own, to, then = (
         ", ".join("-".join(each.features) + _least(each) for each in some)
         for some in (
-            [each for each in datums if each.gauge is not None],
+            [datum for datum in datums if datum.gauge is not None],
             datums[:first],
             [each for each in datums[first:] if each.gauge is None],
         )
@@ -104,7 +106,7 @@ def _floating(frame: DatumFrame, datums: Sequence[DatumSpec]) -> PlainContributo
 
 def _lying(datums: Sequence[DatumSpec]) -> Lying | None:
     """Position of the gauges of a frame in their room; None without any."""
-    return next((own.gauge for own in datums if own.gauge is not None), None)
+    return next((datum.gauge for datum in datums if datum.gauge is not None), None)
 
 
 def _boundaries(drawing: Drawing) -> dict[str, Boundary]:
@@ -133,7 +135,7 @@ def _least(datum: DatumSpec) -> str:
 def _boundary(datums: Sequence[DatumSpec]) -> str:
     """The boundaries of the gauges of a frame, in words."""
     words = {"mmc": "maximum", "lmc": "least"}
-    return " or ".join(dict.fromkeys(words[own.boundary] for own in datums if own.gauge is not None))
+    return " or ".join(dict.fromkeys(words[datum.boundary] for datum in datums if datum.gauge is not None))
 
 
 def room_of(drawing: Drawing, of: str, datums: tuple[DatumSpec, ...]) -> GaugeRoom | None:
@@ -149,7 +151,7 @@ def room_of(drawing: Drawing, of: str, datums: tuple[DatumSpec, ...]) -> GaugeRo
 
 
 def _axes(drawing: Drawing, *features: str) -> tuple[Array, Array]:
-    first, second = (drawing.kind(own).frame[:3, 2] for own in features)
+    first, second = (drawing.kind(feature).frame[:3, 2] for feature in features)
     return first, second
 
 
@@ -180,7 +182,7 @@ def _room(drawing: Drawing, effects: Effects, boundary: Boundary) -> GaugeShift:
     virtual, grows = _virtual(drawing, boundary.feature, (*boundary.earlier, boundary.own), len(boundary.earlier))
     bonus = Bonus(virtual if grows else virtual - ANY, virtual + ANY if grows else virtual, grows=grows)
     zone = catalogue.point_in_disc(0.0)
-    draws = {own.name: own.draw for own in effects.contributors}
+    draws = {contributor.name: contributor.draw for contributor in effects.contributors}
     leaning = []
     for own in effects.moved_by.get(boundary.feature, ()):
         matrix, draw = HALF_DIFFERENCE @ own.matrix, draws[own.contributor]

@@ -43,7 +43,7 @@ def frame_name(part: str, datums: Sequence[DatumSpec]) -> str:
 def frame_on(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> DatumFrame:
     """A part's frame on some datums, regardless of their sizes."""
     return DatumFrame(
-        frame_name(part, datums), part, tuple(_datum(drawing.features[part], part, own) for own in datums)
+        frame_name(part, datums), part, tuple(_datum(drawing.features[part], part, datum) for datum in datums)
     )
 
 
@@ -87,7 +87,7 @@ def of_tolerances(drawing: Drawing) -> Iterator[tuple[str, tuple[DatumSpec, ...]
 def _datum(features: Mapping[str, FeatureUnion], part: str, spec: DatumSpec) -> Datum:
     names = tuple(f"{part}.{feature}" for feature in spec.features)
     if not spec.targets:
-        flat = any(features[own].kind in ("plane", "slot") for own in spec.features)
+        flat = any(features[feature].kind in ("plane", "slot") for feature in spec.features)
         pattern = spec.is_several and (flat or spec.gauge is not None)
         return Datum(names, "pattern" if pattern else spec.simulator)
     into = np.linalg.inv(features[spec.features[0]].frame)
@@ -140,7 +140,7 @@ def in_order(
         known |= set(ready)
         waiting = [name for name in waiting if name not in known]
         for name, frame in frames.items():
-            if name not in done and all(own in known for own in _features(frame)):
+            if name not in done and all(feature in known for feature in _features(frame)):
                 ordered.append(name)
                 done.add(name)
     return tuple(features), tuple(ordered), ()

@@ -55,12 +55,12 @@ def _inspected(spec: FeatureMeasureSpec, drawing: Drawing, found: Measured) -> M
     frame = frame_name(part_of(first), spec.named_datums)
     several = spec if isinstance(spec, InspectedTogetherSpec) else None
     room = None if several else room_of(drawing, first, spec.named_datums)
-    over_gauges = room is None and any(own.gauge is not None for own in spec.named_datums)
+    over_gauges = room is None and any(named_datum.gauge is not None for named_datum in spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else found.gauge
     found = replace(found, features=features, frame=frame, bonuses=bonuses)
     if isinstance(spec, InspectedOrientationSpec) and found.direction is not None:
         found = replace(found, direction=_across(spec, drawing, found.direction))
-    zones = tuple(own.internal for own in several.zones) if several else ()
+    zones = tuple(zone.internal for zone in several.zones) if several else ()
     return replace(found, gauge=gauge, zones=zones, room=room, over_gauges=over_gauges)
 
 
@@ -88,7 +88,7 @@ def _bonuses(drawing: Drawing, spec: FeatureMeasureSpec, features: Sequence[str]
     modifier = spec.modifier if isinstance(spec, widened) else None
     if modifier is None:
         return ()
-    found = (sized_by(drawing, own, modifier).bonus for own in features)
+    found = (sized_by(drawing, feature, modifier).bonus for feature in features)
     return tuple(MaterialBonus(own.low, own.high, own.grows) for own in found)
 
 

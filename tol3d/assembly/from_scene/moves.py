@@ -81,7 +81,8 @@ def mated(spec: MateSpec, name: str, setting: Setting) -> Mate:
 def relations_of(specs: Sequence[RelationSpec]) -> tuple[Relation, ...]:
     """Relations of a mate, or kept by another move."""
     return tuple(
-        Relation(own.kind, own.from_, own.to, 0.0 if own.distance is None else own.distance.internal) for own in specs
+        Relation(spec.kind, spec.from_, spec.to, 0.0 if spec.distance is None else spec.distance.internal)
+        for spec in specs
     )
 
 
@@ -105,7 +106,7 @@ def fitted(spec: BestFitSpec, name: str, setting: Setting) -> BestFit:
         SceneError: points on a line.
     """
     _refuse_a_line(name, spec, setting)
-    fits = tuple(Fit(own.from_, own.to, own.weight, _directions(own.along)) for own in spec.pairs)
+    fits = tuple(Fit(pair.from_, pair.to, pair.weight, _directions(pair.along)) for pair in spec.pairs)
     return BestFit(name, spec.part, fits, spec.criterion)
 
 
@@ -127,9 +128,9 @@ def rested(spec: RestSpec, name: str, setting: Setting) -> Rest:
 
 def _refuse_a_line(name: str, spec: BestFitSpec, setting: Setting) -> None:
     """Refuse points in space that leave a turn free; a fit with directions may leave those that it does not name."""
-    if any(own.along for own in spec.pairs):
+    if any(pair.along for pair in spec.pairs):
         return
-    points = np.array([setting.origin(own.from_) for own in spec.pairs])
+    points = np.array([setting.origin(pair.from_) for pair in spec.pairs])
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if spread[1] <= FLAT * max(spread[0], 1.0):
         words = f"expected points that do not all lie on one line, about which {spec.part!r} would be free to turn"

@@ -115,13 +115,13 @@ def _bolted(
         shank = features[spec.of]
         diameter, by = shank.shape.nominal_size or 0.0, shank.mating_by
     mean = diameter + _mean_deviation(effects, by)
-    for own in holes:
-        short = mean - _mean_size(effects, own)
+    for hole in holes:
+        short = mean - _mean_size(effects, hole)
         if short > 0.0:
             words = (
-                f"expected a size of {own.name!r} above that of its bolt at the mean, got {short * 1e3:.6g} um under it"
+                f"expected a size of {hole.name!r} above that of its bolt at the mean, got {short * 1e3:.6g} um under"
             )
-            raise scene.refuse(here, f"{words}; nothing could be assembled")
+            raise scene.refuse(here, f"{words} it; nothing could be assembled")
     bolt = Bolt(diameter, by, frame, reach)
     return Engagement(holes[0].name, holes[1].name, places[0], places[1], bolt)
 
@@ -142,7 +142,7 @@ def _mean_size(effects: Effects, feature: Feature) -> float:
 
 
 def _mean_deviation(effects: Effects, size_by: Sequence[Contribution]) -> float:
-    contributors = {own.name: own for own in effects.contributors}
+    contributors = {contributor.name: contributor for contributor in effects.contributors}
     return sum(float(own.matrix[0] @ contributors[own.contributor].draw.mean(turning=False)) for own in size_by)
 
 

@@ -77,7 +77,7 @@ class Member:
             middle = np.cross(self.place - centre, self.directions[0]) @ turns
             rim = np.cross(self.feature.frame[:3, :2].T, self.directions[0]) @ turns
             return float(np.linalg.norm(middle) + radius * np.linalg.norm(rim, 2))
-        return max(float(np.linalg.norm(own @ turns, 2)) for own in self.levers(centre))
+        return max(float(np.linalg.norm(lever @ turns, 2)) for lever in self.levers(centre))
 
     def moved(self, centre: Array, shifts: Array, turns: Array) -> Array:
         """Its components (components, motions) by shifts (3, shifts) and turns (3, turns) about a centre."""
@@ -104,23 +104,25 @@ def motion_of(scene: Scene, drawing: Drawing, pattern: Sequence[Stated]) -> tupl
     assert isinstance(spec, Composite)
     assert spec.lower_segment is not None
     members = [_member(drawing, own, spec) for own in pattern]
-    centre = np.mean([own.place for own in members], axis=0)
+    centre = np.mean([member.place for member in members], axis=0)
     first = members[0].feature.frame[:3, :3]
-    seen = sum(own.directions.T @ own.directions for own in members)
+    seen = sum(member.directions.T @ member.directions for member in members)
     shifts = _basis(np.asarray(seen), first)
     room = spec.zone.size - spec.lower_segment.zone.size
     free = _free_turns(drawing, part_of(pattern[0].feature), spec.lower_segment.datums or ())
-    square = sum((row.T @ row for own in members for row in own.levers(centre)), np.zeros((3, 3)))
+    square = sum((row.T @ row for member in members for row in member.levers(centre)), np.zeros((3, 3)))
     turns = _basis(free @ square @ free, first)
     if turns.size:
         sizes, axes = np.linalg.eigh(turns.T @ square @ turns)
         alike = 1.0 / np.sqrt(sizes)  # such that all of them move features alike
-        farthest = max(own.largest_displacement(centre, turns @ axes @ np.diag(alike) @ axes.T) for own in members)
-        reach = max(float(np.linalg.norm(own.place - centre + own.judged, axis=1).max()) for own in members)
+        farthest = max(
+            member.largest_displacement(centre, turns @ axes @ np.diag(alike) @ axes.T) for member in members
+        )
+        reach = max(float(np.linalg.norm(member.place - centre + member.judged, axis=1).max()) for member in members)
         most = math.sqrt(BENT * spec.lower_segment.zone.size / reach) / (0.5 * room)
         turns = turns @ axes @ np.diag(np.minimum(alike / farthest, most)) @ axes.T
     zone = catalogue.pattern_motion(room, shifts.shape[1], turns.shape[1])
-    moved = {own.name: own.moved(centre, shifts, turns) for own in members}
+    moved = {member.name: member.moved(centre, shifts, turns) for member in members}
     return drawn_by(spec.law, zone, scene.files), moved, "shift and turn" if turns.size else "shift"
 
 

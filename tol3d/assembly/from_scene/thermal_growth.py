@@ -74,7 +74,7 @@ def _shift(frame: DatumFrame, drawing: Drawing) -> Array:
         held = np.concatenate(rows)
         across, lengths, along = np.linalg.svd(held @ free)
         taken = np.flatnonzero(lengths > HELD)
-        parts = np.split(across.T[taken], np.cumsum([len(own) for own in rows])[:-1], axis=1)
+        parts = np.split(across.T[taken], np.cumsum([len(row) for row in rows])[:-1], axis=1)
         off = (part @ own @ (_grown(f) - shift) for part, own, f in zip(parts, rows, features, strict=False))
         missing = sum(off, start=np.zeros(len(taken)))
         shift = shift + along[taken].T @ (missing / lengths[taken])
@@ -114,13 +114,13 @@ def _asked(datum: Datum, features: Sequence[FeatureUnion], reach: float, left: A
     own, frame = features[0], features[0].frame
     place, sides = frame[:3, 3], frame[:3, :2].T
     if datum.simulator == "pattern":
-        ways = [each.frame[:3, each.shape.located].T for each in features]
-        ends = [[each.frame[:3, :3] @ end for end in each.shape.ends] for each in features]
+        ways = [feature.frame[:3, feature.shape.located].T for feature in features]
+        ends = [[feature.frame[:3, :3] @ end for end in feature.shape.ends] for feature in features]
         places = [(each.frame[:3, 3], way, some) for each, way, some in zip(features, ways, ends, strict=True)]
         every = [rows(at + end, way) for at, way, some in places for end in some]
         yield np.concatenate(every), np.concatenate([way @ at for at, way, some in places for _ in some])
     elif len(features) > 1:
-        place = np.mean([each.frame[:3, 3] for each in features], axis=0)
+        place = np.mean([feature.frame[:3, 3] for feature in features], axis=0)
         sides = np.linalg.svd((features[-1].frame[:3, 3] - frame[:3, 3])[None])[2][1:]
         yield rows(place, sides), sides @ place
         yield turns(sides)

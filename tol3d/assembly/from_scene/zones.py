@@ -176,7 +176,7 @@ def sized_by(drawing: Drawing, feature: str, modifier: Modifier) -> SizedBy:
     spec, shape = own.spec, drawing.kind(feature).shape
     assert isinstance(spec, SizeSpec)
     law = spec.distribution.resolve(drawing.scene.files)
-    limits = law.limits if spec.limits is None else tuple(own.internal for own in spec.limits)
+    limits = law.limits if spec.limits is None else tuple(limit.internal for limit in spec.limits)
     if limits is None:
         words = "expected the drawing's limits of size, such as [0 um, 15 um], from which the bonus counts; got none"
         raise drawing.scene.refuse(("tolerances", own.entry), f"{words}, and its distribution has none")

@@ -41,19 +41,19 @@ def joint_frames(
     return base, child
 
 
-def _carried(structure: Structure, own: Step, pose_of: Callable[[str], Pose]) -> Pose:
+def _carried(structure: Structure, step: Step, pose_of: Callable[[str], Pose]) -> Pose:
     """The frame on a carrier of the gear that it carries."""
-    carrier, there = own.joint.carrier, structure.carried(own.joint)
+    carrier, there = step.joint.carrier, structure.carried(step.joint)
     if "." in carrier:
         return pose_of(carrier) @ Pose.of(np.linalg.inv(structure.world(carrier)) @ there)
-    if own.carrier == ROOT:
+    if step.carrier == ROOT:
         return Pose.of(there)
     return Pose.of(np.linalg.inv(structure.drawn[carrier]) @ there)
 
 
 def stacked(poses: list[Pose]) -> Array:
     """Poses of several slots as a kernel reads them (n or 1, slots, 3, 4)."""
-    trials = max(max(own.turn.shape[-1], own.shift.shape[-1]) for own in poses)
+    trials = max(max(pose.turn.shape[-1], pose.shift.shape[-1]) for pose in poses)
     found = np.empty((trials, len(poses), 3, 4))
     for k, own in enumerate(poses):
         found[:, k, :, :3] = np.moveaxis(own.turn, -1, 0)

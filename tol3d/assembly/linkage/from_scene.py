@@ -142,7 +142,7 @@ def loop_of(spec: CloseLoopSpec, name: str, setting: Setting) -> ClosedLoop:
     """
     understood, drawn, pose = setting.understood, setting.drawn, setting.pose
     others = {part_of(feature) for _, feature in spec.targets()} | {
-        own.carrier.partition(".")[0] for own in spec.joints.values() if isinstance(own, RollingSpec)
+        joint.carrier.partition(".")[0] for joint in spec.joints.values() if isinstance(joint, RollingSpec)
     }
     if spec.output is not None:
         others.add(part_of(spec.output.from_))
@@ -150,7 +150,7 @@ def loop_of(spec: CloseLoopSpec, name: str, setting: Setting) -> ClosedLoop:
     loop = _posed(_Asked(understood, name, placed, spec))
     try:
         position = _position(loop, pose)
-        stations = {each: _position(loop, each) for each in spec.pose_names}
+        stations = {pose_name: _position(loop, pose_name) for pose_name in spec.pose_names}
     except UnfitPoseError as error:
         raise setting.scene.refuse(("moves", name, "poses", error.pose.partition(STEP)[0]), str(error)) from None
     errors = _deviations(spec, loop.kinematics, position, drawn)
@@ -414,7 +414,7 @@ def _between(
         return ends[int(share)]
     first, last = (spec.poses[name] for name in names)
     if isinstance(first, TiltPoseSpec) and isinstance(last, TiltPoseSpec):
-        tilts = [kinematics.tilt_at(own) for own in ends]
+        tilts = [kinematics.tilt_at(end) for end in ends]
         return kinematics.at_output(tilts[0] + share * (tilts[1] - tilts[0]), start)
     if isinstance(first, PlacePoseSpec) and isinstance(last, PlacePoseSpec):
         frames = [_frame(own) for own in (first, last)]
@@ -423,7 +423,7 @@ def _between(
         found[:3, :3] = rotation(turned[0] + share * (turned[1] - turned[0]))
         found[:3, 3] = frames[0][:3, 3] + share * (frames[1][:3, 3] - frames[0][:3, 3])
         return kinematics.at_place(found, start)
-    inputs = [kinematics.inputs_at(own) for own in ends]
+    inputs = [kinematics.inputs_at(end) for end in ends]
     between = {name: own + share * (inputs[1][name] - own) for name, own in inputs[0].items()}
     return kinematics.at_inputs(between, start)
 

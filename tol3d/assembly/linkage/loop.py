@@ -106,9 +106,9 @@ class ClosedLoop(Move):
     @cached_property
     def _pairs(self) -> tuple[tuple[str, str], ...]:
         found = []
-        for own in self.structure.steps:
-            joint = own.joint
-            found.append((joint.on, joint.of) if own.reverse or own.body == ROOT else (joint.of, joint.on))
+        for step in self.structure.steps:
+            joint = step.joint
+            found.append((joint.on, joint.of) if step.reverse or step.body == ROOT else (joint.of, joint.on))
             if "." in joint.carrier:
                 found.append((joint.of, joint.carrier))
         return tuple(found)
@@ -121,7 +121,7 @@ class ClosedLoop(Move):
     @property
     def words(self) -> str:
         """See Move."""
-        return ", ".join(own.joint.name for own in self.structure.steps)
+        return ", ".join(step.joint.name for step in self.structure.steps)
 
     @cached_property
     def plays_told(self) -> tuple[object, ...]:

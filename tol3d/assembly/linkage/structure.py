@@ -164,23 +164,23 @@ class Structure(Valued):
     @cached_property
     def step(self) -> Mapping[str, Step]:
         """Steps by the joint's name."""
-        return {own.joint.name: own for own in self.steps}
+        return {step.joint.name: step for step in self.steps}
 
     @cached_property
     def joined(self) -> frozenset[str]:
         """Features of bodies and of placed parts that its joints join."""
-        found = {name for own in self.steps for name in (own.joint.on, own.joint.of, own.joint.carrier)}
+        found = {name for step in self.steps for name in (step.joint.on, step.joint.of, step.joint.carrier)}
         return frozenset(name for name in found if "." in name)
 
     @cached_property
     def slots(self) -> int:
         """Number of frames; the last one is the output's."""
-        return sum(2 if own.joint.kind == ROLLING else 1 for own in self.steps) + 1
+        return sum(2 if step.joint.kind == ROLLING else 1 for step in self.steps) + 1
 
     @cached_property
     def width(self) -> int:
         """Number of coordinates."""
-        return sum(max(len(FREEDOMS[own.joint.kind]), 1) for own in self.steps)
+        return sum(max(len(FREEDOMS[step.joint.kind]), 1) for step in self.steps)
 
     @cached_property
     def rows(self) -> int:
@@ -238,11 +238,11 @@ class Structure(Valued):
     def numbers(self) -> Array:
         """See `loops_closed`."""
         found = np.zeros((self.slots, 10))
-        for own in self.steps:
-            found[own.frame, 0] = own.joint.ratio if own.joint.kind == ROLLING else own.joint.lead
-            if own.joint.kind == UNIVERSAL:
-                between = self.apart(own.joint)[:3, :3]
-                found[own.frame, 1:] = (between.T if own.reverse else between).ravel()
+        for step in self.steps:
+            found[step.frame, 0] = step.joint.ratio if step.joint.kind == ROLLING else step.joint.lead
+            if step.joint.kind == UNIVERSAL:
+                between = self.apart(step.joint)[:3, :3]
+                found[step.frame, 1:] = (between.T if step.reverse else between).ravel()
         return found
 
     def world(self, feature: str) -> Array:
@@ -309,7 +309,7 @@ def structured(
     tree: list[tuple[Joint, bool]] = []
     reached, left = dict[str, int](), list(joints)
     given = {(joint, k) for joint, k in inputs.values()}
-    rolled = {own.of.partition(".")[0] for own in joints if own.kind == ROLLING}
+    rolled = {joint.of.partition(".")[0] for joint in joints if joint.kind == ROLLING}
 
     def is_reached(part: str) -> bool:
         return part not in bodies or part in reached
@@ -372,6 +372,6 @@ def structured(
             lean = float(np.degrees(np.arccos(np.clip(made.apart(own)[2, 2], -1.0, 1.0))))
             words = f"expected axes at right angles where both parts are `placed`, got {lean:.4g} deg"
             raise InputError(f"moves.{name}.joints.{own.name}: {words}")
-    places = np.array([made.world(feature)[:3, 3] for own in joints for feature in (own.on, own.of)])
+    places = np.array([made.world(feature)[:3, 3] for joint in joints for feature in (joint.on, joint.of)])
     spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
     return replace(made, length=length or spread or 1.0)

@@ -123,5 +123,5 @@ class DatumFrame(Valued):
 
     @property
     def _on_gauges(self) -> list[bool]:
-        at_boundary = {own.feature for own in self.gauges.rooms} if self.gauges is not None else set()
-        return [not at_boundary.isdisjoint(own.features) for own in self.datums]
+        at_boundary = {room.feature for room in self.gauges.rooms} if self.gauges is not None else set()
+        return [not at_boundary.isdisjoint(datum.features) for datum in self.datums]

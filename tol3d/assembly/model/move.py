@@ -68,7 +68,7 @@ class Move(Valued, ABC):
     @property
     def beside(self) -> bytes:
         """See Valued: its methods, which it holds so that no other takes the place of one."""
-        return repr([id(own) for own in self.methods]).encode()
+        return repr([id(method) for method in self.methods]).encode()
 
     def __getstate__(self) -> dict[str, object]:
         return {name: own for name, own in super().__getstate__().items() if name != "methods"}

@@ -55,7 +55,7 @@ class Touch(PartMove):
 
     @property
     def feature_pairs(self) -> Sequence[tuple[str, str]]:
-        return [(own.moving, own.target) for own in self.contacts]
+        return [(contact.moving, contact.target) for contact in self.contacts]
 
     @property
     def words(self) -> str:
@@ -150,7 +150,7 @@ class Locate(PartMove):
 
     @property
     def feature_pairs(self) -> Sequence[tuple[str, str]]:
-        return [(own.moving, own.target) for own in self.pairs]
+        return [(pair.moving, pair.target) for pair in self.pairs]
 
     @property
     def words(self) -> str:
@@ -194,7 +194,7 @@ class BestFit(PartMove):
 
     @property
     def feature_pairs(self) -> Sequence[tuple[str, str]]:
-        return [(own.moving, own.target) for own in self.fits]
+        return [(fit.moving, fit.target) for fit in self.fits]
 
     @property
     def terms(self) -> int:
@@ -240,11 +240,11 @@ class Mate(PartMove):
 
     @property
     def feature_pairs(self) -> Sequence[tuple[str, str]]:
-        return [(own.moving, own.target) for own in self.relations]
+        return [(relation.moving, relation.target) for relation in self.relations]
 
     @property
     def words(self) -> str:
-        return ", ".join(f"{own.kind} {own.target}" for own in self.relations)
+        return ", ".join(f"{relation.kind} {relation.target}" for relation in self.relations)
 
 
 @dataclass(frozen=True, eq=False)
@@ -277,8 +277,8 @@ class Rest(PartMove):
 
     @property
     def feature_pairs(self) -> Sequence[tuple[str, str]]:
-        related = [(own.moving, own.target) for own in self.relations]
-        return [*related, *((own.moving, own.target) for own in self.pairs)]
+        related = [(relation.moving, relation.target) for relation in self.relations]
+        return [*related, *((pair.moving, pair.target) for pair in self.pairs)]
 
     @property
     def terms(self) -> int:

@@ -134,8 +134,8 @@ class Engage(PartMove):
 
     @property
     def feature_pairs(self) -> Sequence[tuple[str, str]]:
-        related = [(own.moving, own.target) for own in self.relations]
-        return [*related, *((own.inner, own.outer) for own in self.engagements)]
+        related = [(relation.moving, relation.target) for relation in self.relations]
+        return [*related, *((engagement.inner, engagement.outer) for engagement in self.engagements)]
 
     @property
     def terms(self) -> int:
@@ -147,4 +147,4 @@ class Engage(PartMove):
 
     @property
     def words(self) -> str:
-        return ", ".join(own.name for own in self.engagements)
+        return ", ".join(engagement.name for engagement in self.engagements)

@@ -175,7 +175,7 @@ def face_names(scene: Scene) -> dict[str, str]:
         SceneError: the run's kept faces are damaged.
     """
     solids = scene.of(SolidSpec)
-    if not any(own.faces_picked for solid in solids.values() for own in solid.features.values()):
+    if not any(feature.faces_picked for solid in solids.values() for feature in solid.features.values()):
         return {}
     kept = kept_in(scene.files, scene.source)
     return {
@@ -183,7 +183,7 @@ def face_names(scene: Scene) -> dict[str, str]:
         for name in solids
         for first in likes(name, solids)[-1:]
         for feature, faces in kept.picks.get(first, {}).items()
-        if not any(feature in solids[own].features for own in likes(name, solids)[:-1])
+        if not any(feature in solids[like].features for like in likes(name, solids)[:-1])
     }
 
 

@@ -61,7 +61,7 @@ def _agree(stated: Found, found: Found) -> bool:
 
 def _plain(values: tuple[Quantity | float, ...]) -> NDArray[np.float64]:
     """Lengths in mm."""
-    return np.array([own.internal if isinstance(own, Quantity) else own for own in values])
+    return np.array([value.internal if isinstance(value, Quantity) else value for value in values])
 
 
 def _unit(values: tuple[Quantity | float, ...]) -> NDArray[np.float64]:
@@ -161,9 +161,9 @@ def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: b
     return kept, {**files, FEATURES: file_of(kept)}
 
 
-def _picks(part: str, own: SolidSpec) -> Iterator[tuple[KeyPath, Pick]]:
+def _picks(part: str, solid: SolidSpec) -> Iterator[tuple[KeyPath, Pick]]:
     """Picks of a part's features, each with its key in the scene."""
-    for feature, spec in own.features.items():
+    for feature, spec in solid.features.items():
         for field, face in spec.faces_picked.items():
             keys = (int(key) if key.isdecimal() else key for key in field.split("."))
             near = None if face.near is None else _triple(face.near)

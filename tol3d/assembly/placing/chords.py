@@ -107,8 +107,8 @@ def conjugate(place: Place, axes: Array) -> Sequence[Array]:
                 for g in range(size):
                     both = x[f] * x[g] + y[f] * y[g]
                     stiffness[f, g] += 2.0 * both / room + 4.0 * out[f] * out[g] / (room * room)
-        for own in axes:
-            along = own[:, None] * np.ones(trials)
+        for axis in axes:
+            along = axis[:, None] * np.ones(trials)
             for other in found:
                 along = along - other * _by_stiffness(other, stiffness, along)
             found.append(along / np.sqrt(_by_stiffness(along, stiffness, along)))

@@ -127,12 +127,15 @@ def touching(move: Touch, nominal: World) -> Touching:
     _refuse_redundant(move, rows, np.cumsum(counts).tolist(), origin[:, 0], reach)
     about_origin = rows * np.array([1.0, 1.0, 1.0, reach, reach, reach])
     basis = np.roll(seen_steps(free_motions(about_origin, np.zeros(3), reach), reach), 3, axis=0)
-    shapes = [[nominal.assembly.features[name].shape for name in (each.moving, each.target)] for each in move.contacts]
+    shapes = [
+        [nominal.assembly.features[name].shape for name in (contact.moving, contact.target)]
+        for contact in move.contacts
+    ]
     made = Touching(
         move,
         kinds,
         signs,
-        np.array([is_inside(*each) for each in shapes]),
+        np.array([is_inside(*shape) for shape in shapes]),
         reach,
         flat,
         start,
@@ -201,13 +204,13 @@ def _asked(move: Touch, world: World, middle: Array, origin: Array) -> tuple[Arr
     sums = [touching_distance(*pair, world.columns) for pair in zip(moving, targets, strict=True)]
     return (
         _stacked([_side(own, own.origin - middle) for own in moving]),
-        _stacked([_side(own, own.origin - origin) for own in targets]),
+        _stacked([_side(target, target.origin - origin) for target in targets]),
         _stacked(sums),
     )
 
 
-def _side(own: ActualFeature, origin: Array) -> Array:
-    return np.concatenate(np.broadcast_arrays(origin, own.direction))
+def _side(actual_feature: ActualFeature, origin: Array) -> Array:
+    return np.concatenate(np.broadcast_arrays(origin, actual_feature.direction))
 
 
 def _stacked(arrays: Sequence[Array]) -> Array:

@@ -112,7 +112,7 @@ def _refuse_scattered(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -
         if len(datum.features) < 2 or datum.simulator == "pattern":
             continue
         places = np.concatenate([nominal[name].origin.reshape(3, -1)[:, :1] for name in datum.features], axis=1).T
-        name = "-".join(own.partition(".")[2] for own in datum.features)
+        name = "-".join(feature.partition(".")[2] for feature in datum.features)
         _, spread, ways = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
         if len(places) > 2 and spread[1] > ABREAST:
             raise InputError(
@@ -233,7 +233,7 @@ class PartFeatures:
         return (
             trials % self._columns.shape[1] == 0
             and len(part.features) == len(self._features)
-            and all(own == self._features.get(own.name) for own in part.features)
+            and all(feature == self._features.get(feature.name) for feature in part.features)
             and all(own == other for own, other in zip(part.datum_frames, self._part.datum_frames, strict=True))
         )
 

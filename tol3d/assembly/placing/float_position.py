@@ -65,7 +65,7 @@ class Floats:
         if self.push is not None or floating.kind != "random" or self.by_pairs is not None:
             return None
         order, axes = axes_of(self.freedoms)
-        bolts = sum(own.bolt is not None for own in self.move.engagements)
+        bolts = sum(engagement.bolt is not None for engagement in self.move.engagements)
         return axes, floating.sweeps(world.columns[floating.columns], order, bolts)
 
 

@@ -95,7 +95,7 @@ class GaugedFrame(SeenMotions):
             actual: the features of the part.
             columns: the deviations (width, n).
         """
-        trials, features = columns.shape[1], [actual(own.feature) for own in self.gauges.rooms]
+        trials, features = columns.shape[1], [actual(room.feature) for room in self.gauges.rooms]
         after = [actual(name) for name in self.later.features]
         pose, codes = self.as_kept(seats, full(IDENTITY, trials))
         size = self.freedoms.shape[1]
@@ -153,7 +153,7 @@ def with_gauges(seats: Mapping[str, DatumSeats]) -> dict[str, DatumSeats]:
 
 def _gauged(seats: DatumSeats, gauges: Gauges) -> GaugedFrame:
     """The gauges of a datum frame, by its nominal geometry."""
-    frame, nominal = seats.frame, [seats.nominal[own.feature] for own in gauges.rooms]
+    frame, nominal = seats.frame, [seats.nominal[room.feature] for room in gauges.rooms]
     ties = [tie for tie, k in zip(seats.alignment.ties, seats.datums, strict=True) if k < frame.regardless]
     its = seats.of(seats.nominal.__getitem__)[: len(ties)]
     after = [seats.nominal[own.features[0]] for own in frame.later]

@@ -170,9 +170,9 @@ def position_in_room(measured: Measured, world: World, actual: ActualFeature, in
     features = (actual, datum)
     x, y = (
         [
-            dot(column(own), end - column(each.feature.frame[:3, :3] @ place + each.feature.frame[:3, 3]))
-            for each in features
-            for end, place in zip(each.ends, _ends(each), strict=True)
+            dot(column(own), end - column(feature.feature.frame[:3, :3] @ place + feature.feature.frame[:3, 3]))
+            for feature in features
+            for end, place in zip(feature.ends, _ends(feature), strict=True)
         ]
         for own in across
     )

@@ -122,16 +122,16 @@ def _freedoms(measured: Measured, world: World) -> tuple[Array, Array, Array, in
     middle = np.mean(places, axis=0)
     reach = max(1.0, float(np.linalg.norm(np.subtract(places, middle), axis=1).max()))
     ways, k = np.zeros((len(places), 2, 6)), 0
-    for own in features:
-        its_places, directions = judged(own)
+    for feature in features:
+        its_places, directions = judged(feature)
         for _ in its_places:
-            for r, direction in enumerate(directions @ own.frame[:3, :3].T):
+            for r, direction in enumerate(directions @ feature.frame[:3, :3].T):
                 ways[k, r] = point_row(places[k] - middle, direction, reach)
             k += 1
     turns = np.eye(3)
     if measured.frame:
         part = world.assembly.part[features[0].part]
-        frame = next(own for own in part.datum_frames if own.name == measured.frame)
+        frame = next(datum_frame for datum_frame in part.datum_frames if datum_frame.name == measured.frame)
         turns = held_by_datums(world.assembly, frame).left.turns.T
     shifts = _seen(ways[..., :3])
     by_shift, by_turn = (ways[..., :3] @ shifts).reshape(-1, shifts.shape[1]), ways[..., 3:] @ turns

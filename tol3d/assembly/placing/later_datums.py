@@ -72,8 +72,8 @@ class Ask:
             places = self.nominal.ends if self.what == "corners" else [self.nominal.origin]
             places = [self.nominal.at(self.target)] if self.target is not None else places
             sides = [x, y] if self.what == "aside" else [z]
-            rows = [[point_row(place[:, 0] - seen.middle, own, seen.reach) for own in sides] for place in places]
-            found = [[*own, nothing][:2] for own in rows]
+            rows = [[point_row(place[:, 0] - seen.middle, side, seen.reach) for side in sides] for place in places]
+            found = [[*row, nothing][:2] for row in rows]
         return np.array(found) @ seen.motions
 
 
@@ -164,10 +164,12 @@ def later_datums(frame: DatumFrame, nominal: Sequence[ActualFeature], seen: Seen
     return LaterDatums(tuple(taken), left)
 
 
-def _asks(datum: Datum, own: ActualFeature, reach: float) -> Iterator[Ask]:
+def _asks(datum: Datum, actual_feature: ActualFeature, reach: float) -> Iterator[Ask]:
     if datum.targets is not None:
-        yield from (Ask(own.feature.name, "target", own, reach, target) for target in datum.targets)
+        yield from (
+            Ask(actual_feature.feature.name, "target", actual_feature, reach, target) for target in datum.targets
+        )
         return
-    for what in own.asked:
+    for what in actual_feature.asked:
         outermost = what == "height" and datum.simulator == "contact"
-        yield Ask(own.feature.name, "outermost" if outermost else what, own, reach)
+        yield Ask(actual_feature.feature.name, "outermost" if outermost else what, actual_feature, reach)

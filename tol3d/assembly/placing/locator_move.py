@@ -275,7 +275,7 @@ def side_of(pair: Pair, move: Locate | Rest, world: World) -> tuple[Array, Array
 
 def _stacked(arrays: Sequence[Array]) -> Array:
     """Arrays of all contacts, (6, ..., n) or (6, ..., 1)."""
-    trials = max(own.shape[-1] for own in arrays)
+    trials = max(array.shape[-1] for array in arrays)
     found = np.empty((len(arrays), *arrays[0].shape[:-1], trials))
     for place, own in zip(found, arrays, strict=True):
         place[...] = own

@@ -64,15 +64,15 @@ class Mating(Placer):
 
     def asked(self, assembly: Assembly, middle: Array) -> Iterator[Asked]:
         """Its relations, one by one."""
-        for own in self.move.relations:
-            asked = asked_of(own, assembly.features)
+        for relation in self.move.relations:
+            asked = asked_of(relation, assembly.features)
             assert asked is not None  # others were refused before
-            moving, target = frame_in_world(assembly, own.moving), frame_in_world(assembly, own.target)
+            moving, target = frame_in_world(assembly, relation.moving), frame_in_world(assembly, relation.target)
             z = target[:3, 2]
             rows = rows_of(asked, moving[:3, 3] - middle, z)
             if asked[1] == "level":
                 rows = np.vstack([rows, [*np.zeros(3), *np.cross(moving[:3, 2], z)]])
-            yield Asked(f"{own.kind}: {own.moving} on {own.target}", rows)
+            yield Asked(f"{relation.kind}: {relation.moving} on {relation.target}", rows)
 
 
 def mating(move: Mate, nominal: World) -> Mating:
@@ -241,7 +241,7 @@ def kept_of(found: Mating, nominal: World, length: float) -> KeptRelations:
         nominal: the world before, without deviations.
         length: by which directions count [mm].
     """
-    toward = tuple(np.zeros(3) if own.toward is None else own.toward[:, 0] for own in found.seats(nominal))
+    toward = tuple(np.zeros(3) if seat.toward is None else seat.toward[:, 0] for seat in found.seats(nominal))
     return KeptRelations(found, length, toward)
 
 

@@ -276,7 +276,7 @@ def _over_play(plan: PlacingPlan, name: str) -> Mapping[int, RoomPlacer]:
         for side in (1.0, -1.0):
             nudged = [move.nudged(side * own) for own in NUDGE * np.eye(move.motions)]
             blocks = [_placed(plan, rest, {index: own}, measure=name) for own in nudged]
-            read.append([_read(plan, own, name, plan.of_measures[name])[0][0] for own in blocks])
+            read.append([_read(plan, block, name, plan.of_measures[name])[0][0] for block in blocks])
         slope = np.subtract(*np.array(read)) / (2 * NUDGE)
         found[index] = move.at_support_point(sign * np.where(np.abs(slope) > FLAT, slope, 0.0))
     return found

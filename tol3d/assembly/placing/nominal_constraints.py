@@ -131,7 +131,7 @@ def _numbers(vector: Array) -> str:
 def held_by_datums(assembly: Assembly, frame: DatumFrame) -> Freedoms:
     """Freedoms taken by each datum of a frame, along the axes of its part."""
     asked = [Asked(_datum_name(datum), _of_datum(assembly, datum, k)) for k, datum in enumerate(frame.datums)]
-    origins = np.array([assembly.features[name].frame[:3, 3] for own in frame.datums for name in own.features])
+    origins = np.array([assembly.features[name].frame[:3, 3] for datum in frame.datums for name in datum.features])
     return taken(asked, np.zeros(3), _reach(origins))
 
 
@@ -144,7 +144,7 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
     frame = features[0].frame
     at, z = frame[:3, 3], frame[:3, 2]
     if datum.simulator == "pattern":
-        return np.concatenate([own for each in features for own in _of_places(each)])
+        return np.concatenate([of_place for feature in features for of_place in _of_places(feature)])
     if len(features) > 1:
         line = features[-1].frame[:3, 3] - at
         return rows_of(("across", "direction"), at, line / np.linalg.norm(line))
@@ -163,7 +163,7 @@ def held_by(assembly: Assembly, plan: Placer) -> Freedoms:
     """Freedoms taken by each step of a move of one body, along the axes of the world; none where it lists none."""
     part = assembly.part[plan.move.parts[0]]
     middle = part.pose[:3, 3]
-    places = [frame_in_world(assembly, own.name)[:3, 3] for own in part.features]
+    places = [frame_in_world(assembly, feature.name)[:3, 3] for feature in part.features]
     return taken(list(plan.asked(assembly, middle)), middle, _reach(np.array(places).reshape(-1, 3) - middle))
 
 

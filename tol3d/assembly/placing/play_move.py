@@ -173,7 +173,7 @@ class Engaging(RoomPlacer):
         """Poses at which each pin is where a float by pairs draws it, and flags of those found (n,)."""
         assert self.floats.by_pairs is not None
         drawn, lacking = world.columns[self.move.floating.columns], np.zeros(world.trials)
-        targets = [world.placed(own) for own in self._targets(world)]
+        targets = [world.placed(target) for target in self._targets(world)]
         for _ in range(ROUNDS):
             offsets, clearances = self._offsets(world, pose, targets)
             steps = self.floats.by_pairs.steps(offsets, clearances, self.rows, drawn)
@@ -202,7 +202,10 @@ class Engaging(RoomPlacer):
 
     def _targets(self, world: World) -> Sequence[str]:
         body = world.bodies[self.move.part]
-        return [own.outer if world.part_of(own.inner) in body else own.inner for own in self.move.engagements]
+        return [
+            engagement.outer if world.part_of(engagement.inner) in body else engagement.inner
+            for engagement in self.move.engagements
+        ]
 
     def _offsets(self, world: World, pose: Pose, targets: Sequence[ActualFeature]) -> tuple[Array, Array]:
         """Offsets (cones, 2, n) and clearances (cones, n) of the part at a pose."""
@@ -240,19 +243,25 @@ def engaging(move: Engage, nominal: World) -> Engaging:
     start, _ = mate.poses(nominal, mate.seats(nominal), nominal.poses[move.part])
     world = nominal.with_part_at(move.part, start)
     places, ways = [], []
-    for own in move.engagements:
-        if own.bolt is not None:
-            for name, its_places in ((own.inner, own.places), (own.outer, own.outer_places)):
+    for engagement in move.engagements:
+        if engagement.bolt is not None:
+            for name, its_places in (
+                (engagement.inner, engagement.places),
+                (engagement.outer, engagement.outer_places),
+            ):
                 turn = world.placed(name).pose.turn[:, :, 0]
                 moves = world.part_of(name) in world.bodies[move.part]
-                places += [world.placed(name).at(its)[:, 0] for its in its_places]
+                places += [world.placed(name).at(its_place)[:, 0] for its_place in its_places]
                 ways += [[-turn[:, 0], -turn[:, 1]] if moves else [np.zeros(3), np.zeros(3)] for _ in its_places]
             continue
-        frame, inner_moves = world.placed(own.inner).pose, world.part_of(own.inner) in world.bodies[move.part]
+        frame, inner_moves = (
+            world.placed(engagement.inner).pose,
+            world.part_of(engagement.inner) in world.bodies[move.part],
+        )
         sign = -1.0 if inner_moves else 1.0  # an offset is of the outer one
-        sides = [sign * frame.turn[:, k, 0] for k in range(3)][world.assembly.features[own.inner].shape.located]
-        for its in own.outer_places:
-            places.append(world.placed(own.outer).at(its)[:, 0])
+        sides = [sign * frame.turn[:, k, 0] for k in range(3)][world.assembly.features[engagement.inner].shape.located]
+        for outer_place in engagement.outer_places:
+            places.append(world.placed(engagement.outer).at(outer_place)[:, 0])
             ways.append([*sides, np.zeros(3)][:2])
     at = np.array(places)
     middle = at.mean(axis=0)
@@ -272,25 +281,25 @@ def engaging(move: Engage, nominal: World) -> Engaging:
     return Engaging(move, mate, middle, reach, origin, freedoms, rows, floats, relations, undo)
 
 
-def _cones_of(own: Engagement) -> int:
-    return len(own.places) if own.bolt is None else len(own.places) + len(own.outer_places)
+def _cones_of(engagement: Engagement) -> int:
+    return len(engagement.places) if engagement.bolt is None else len(engagement.places) + len(engagement.outer_places)
 
 
 def _bolt_rows(move: Engage, world: World, at: Array) -> Array:
     """Change of nominal offsets at (cones, 3) by shifts and leans of bolts (cones, 2, 4 bolts)."""
     bolts = [own for own in move.engagements if own.bolt is not None]
     rows, start, number = np.zeros((len(at), 2, 4 * len(bolts))), 0, 0
-    for own in move.engagements:
-        if own.bolt is not None:
-            across = own.bolt.frame[:3, :2]
-            for k in range(_cones_of(own)):
-                name = own.inner if k < len(own.places) else own.outer
+    for engagement in move.engagements:
+        if engagement.bolt is not None:
+            across = engagement.bolt.frame[:3, :2]
+            for k in range(_cones_of(engagement)):
+                name = engagement.inner if k < len(engagement.places) else engagement.outer
                 seen = world.placed(name).pose.turn[:, :2, 0].T @ across
-                height = (at[start + k] - own.bolt.frame[:3, 3]) @ own.bolt.frame[:3, 2]
+                height = (at[start + k] - engagement.bolt.frame[:3, 3]) @ engagement.bolt.frame[:3, 2]
                 columns = slice(4 * number, 4 * number + 4)
-                rows[start + k, :, columns] = np.concatenate([seen, height / own.bolt.reach * seen], axis=1)
+                rows[start + k, :, columns] = np.concatenate([seen, height / engagement.bolt.reach * seen], axis=1)
             number += 1
-        start += _cones_of(own)
+        start += _cones_of(engagement)
     return rows
 
 

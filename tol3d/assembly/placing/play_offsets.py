@@ -176,28 +176,28 @@ def engaged_places(move: Engage, world: World, origin: Array, middle: Array) -> 
         middle: that in the world (3,) [mm].
     """
     found, number, none = list[EngagedPlace](), 0, np.zeros((3, 1))
-    for own in move.engagements:
-        if own.bolt is not None:
-            half = (own.bolt.diameter + total(own.bolt.size_by, 1, world.columns)[0]) / 2
-            turn = own.bolt.frame[:3, :3]
-            frame = tuple(column(each) for each in (own.bolt.frame[:3, 3] - middle, *turn.T))
-            for name, places in ((own.inner, own.places), (own.outer, own.outer_places)):
+    for engagement in move.engagements:
+        if engagement.bolt is not None:
+            half = (engagement.bolt.diameter + total(engagement.bolt.size_by, 1, world.columns)[0]) / 2
+            turn = engagement.bolt.frame[:3, :3]
+            frame = tuple(column(each) for each in (engagement.bolt.frame[:3, 3] - middle, *turn.T))
+            for name, places in ((engagement.inner, engagement.places), (engagement.outer, engagement.outer_places)):
                 moves = world.part_of(name) in world.bodies[move.part]
                 hole = world.on_body(name, move.part) if moves else world.placed(name)
                 axes, size = hole.pose.turn, mating_size(hole.feature, world.columns) / 2
                 for end in (hole.at(place) for place in places):
                     moving, fixed = (end - column(origin), none) if moves else (none, end - column(middle))
                     at = moving, fixed, (axes[:, 0], axes[:, 1]), axes[:, 2]
-                    found.append(BoltInHole(*at, size, half, moves, number, frame, own.bolt.reach))
+                    found.append(BoltInHole(*at, size, half, moves, number, frame, engagement.bolt.reach))
             number += 1
             continue
-        moves = world.part_of(own.inner) in world.bodies[move.part]
+        moves = world.part_of(engagement.inner) in world.bodies[move.part]
         inner, outer = (
             world.on_body(name, move.part) if own_moves else world.placed(name)
-            for name, own_moves in ((own.inner, moves), (own.outer, not moves))
+            for name, own_moves in ((engagement.inner, moves), (engagement.outer, not moves))
         )
         half_inner, half_outer = (mating_size(each.feature, world.columns) / 2 for each in (inner, outer))
-        for place, its in zip(own.places, own.outer_places, strict=True):
+        for place, its in zip(engagement.places, engagement.outer_places, strict=True):
             points = inner.within(place), outer.at(its)
             moving, fixed = points if moves else points[::-1]
             moving, fixed = moving - column(origin), fixed - column(middle)
@@ -210,14 +210,14 @@ def engaged_places(move: Engage, world: World, origin: Array, middle: Array) -> 
 
 
 def at_places(
-    own: Engagement, inner: ActualFeature, outer: ActualFeature, columns: Array
+    engagement: Engagement, inner: ActualFeature, outer: ActualFeature, columns: Array
 ) -> list[tuple[list[Array], Array]]:
     """Offsets (one or two) and clearance at each place (n,) or (1,)."""
     inside, outside = mating_size(inner.feature, columns), mating_size(outer.feature, columns)
     along = dot(inner.direction, outer.direction)
     taken_up = outside if len(inner.axes) == 2 else outside * outer.seen(along)[0]
     found = []
-    for place, its in zip(own.places, own.outer_places, strict=True):
+    for place, its in zip(engagement.places, engagement.outer_places, strict=True):
         apart = outer.at(its) - inner.within(place)
         found.append(([dot(axis, apart) for axis in inner.axes], (inside - taken_up) / 2))
     return found

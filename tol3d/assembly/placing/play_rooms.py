@@ -107,7 +107,7 @@ class EngagedRoom:
             own[:3], own[3:] = cross(rotated(turn, vector), normal) / self.reach, by_shift * normal
         go, before = np.ones(shift.shape[1], dtype=bool), np.full(shift.shape[1], np.inf)
         while go.any():
-            changes = np.stack([dot(own[:3, None], found[:3]) + dot(own[3:, None], found[3:]) for own in rows])
+            changes = np.stack([dot(row[:3, None], found[:3]) + dot(row[3:, None], found[3:]) for row in rows])
             undone = times(self.undo, changes.reshape(len(rows), -1)).reshape(found.shape)
             found, largest = found - np.where(go, undone, 0.0), np.abs(changes).max(axis=(0, 1))
             go, before = go & (largest > LEFT) & (largest < before), largest
@@ -151,7 +151,7 @@ class EngagedRoom:
         if tangents is not None and push.force.any():
             force = column(push.force)
             moment = cross(rotated(pose[0], push.point), force) / self.reach
-            along = np.stack([dot(moment, own[:3]) + dot(force, own[3:]) for own in tangents.swapaxes(0, 1)])
+            along = np.stack([dot(moment, swapax[:3]) + dot(force, swapax[3:]) for swapax in tangents.swapaxes(0, 1)])
         found, square = np.zeros((self.rows.shape[2], along.shape[1])), np.zeros(along.shape[1])
         for own in along:
             square += own * own

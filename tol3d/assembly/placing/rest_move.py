@@ -70,7 +70,7 @@ class Resting(RockingPlacer):
 
     @property
     def contacts(self) -> Sequence[tuple[str, str]]:
-        return [(own.moving, own.target) for own in self.move.pairs]
+        return [(pair.moving, pair.target) for pair in self.move.pairs]
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and status codes (n,)."""
@@ -108,7 +108,7 @@ class Resting(RockingPlacer):
             trials = np.flatnonzero(results[-1] == outcome)
             if len(trials):
                 *own, begin = (each if each.shape[-1] == 1 else _of(each, trials) for each in given)
-                some = [_of(each, trials) for each in results]
+                some = [_of(result, trials) for result in results]
                 found(*own[:3], on_part, *own[3:], kept_shifts, *force, self.steps, begin, self.reach, *some)
                 for each, its in zip(results, some, strict=True):
                     each[..., trials] = its
@@ -139,7 +139,7 @@ class Resting(RockingPlacer):
         if self.relations is not None:
             yield from self.relations.mating.asked(assembly, middle)
         rows = np.hstack([self.all_rows[:, 3:], self.reach * self.all_rows[:, :3]])
-        targets = dict.fromkeys(touched(assembly, own.target) for own in self.move.pairs)
+        targets = dict.fromkeys(touched(assembly, pair.target) for pair in self.move.pairs)
         words = f"contacts with {listed(list(targets))}, pressed on"
         yield Asked(words, rows_about(rows, self.origin[:, 0] - middle))
 
@@ -167,7 +167,7 @@ def resting(move: Rest, nominal: World) -> Resting:
     on_part = move.points_on == "part"
     middle = np.mean([nominal.on_body(pair.moving, move.part).origin for pair in move.pairs], axis=0)
     at, turn, origin = move.at - middle[:, 0], pose.turn[:, :, 0], pose.point(middle)[:, 0]
-    points, normals, _ = (own[..., 0] for own in _contacts(move, nominal, middle, column(origin)))
+    points, normals, _ = (contact[..., 0] for contact in _contacts(move, nominal, middle, column(origin)))
     arms, normals = (points @ turn.T, normals) if on_part else (points, normals @ turn.T)
     reach = max(float(np.linalg.norm(arms, axis=1).max()), 1.0)
     relations = kept_relations(move, nominal, reach)
@@ -286,8 +286,8 @@ def _contacts(move: Rest, world: World, middle: Array, origin: Array) -> tuple[A
         origin: about which they are in the world (3, 1) [mm].
     """
     contacts = [_contact(move, pair, world, middle, origin) for pair in move.pairs]
-    return _stacked([own[0] for own in contacts]), _stacked([own[1] for own in contacts]), _stacked(
-        [own[2] for own in contacts]
+    return _stacked([contact[0] for contact in contacts]), _stacked([contact[1] for contact in contacts]), _stacked(
+        [contact[2] for contact in contacts]
     )  # fmt: skip
 
 

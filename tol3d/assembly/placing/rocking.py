@@ -140,7 +140,7 @@ def _inspecting(measured: Measured, assembly: Assembly) -> tuple[GaugeRoom, ...]
 
 
 def _gauges(rooms: Sequence[GaugeRoom]) -> str:
-    return f"gauges of {', '.join(own.feature for own in rooms)}" if rooms else ""
+    return f"gauges of {', '.join(room.feature for room in rooms)}" if rooms else ""
 
 
 def _is_room(assembly: Assembly, cause: Cause) -> bool:

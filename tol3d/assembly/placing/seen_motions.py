@@ -108,7 +108,7 @@ class Pattern(SeenMotions):
 
     def _laid(self, before: Sequence[Seat], features: Sequence[ActualFeature]) -> Pose:
         """Pose of the part with the least sum of squares (n,)."""
-        trials = max([own.origin.shape[1] for own in features] + [own.point.shape[1] for own in before])
+        trials = max([feature.origin.shape[1] for feature in features] + [own.point.shape[1] for own in before])
         size, middle = self.motions.shape[1], column(self.middle)
         pose, _ = self.as_kept(before, full(IDENTITY, trials))
         for _ in range(ROUNDS):

@@ -110,14 +110,14 @@ def _above(plane: ActualFeature, line: ActualFeature, radius: Array) -> Array:
     return np.asarray(dot(apart, normal) + np.minimum(low * rise, high * rise) - radius * sine)
 
 
-def _aside(own: ActualFeature, other: ActualFeature) -> tuple[NDArray[np.bool_], Array, Array]:
+def _aside(actual_feature: ActualFeature, other: ActualFeature) -> tuple[NDArray[np.bool_], Array, Array]:
     """Distances of an axis from another one at both ends of the length that they have in common (n,), (n,) [mm].
 
     The first is True where they have some (n,); else the distances are those at the ends that face each other.
     """
-    direction, apart, (half,) = own.direction, other.origin - own.origin, other.spans
+    direction, apart, (half,) = actual_feature.direction, other.origin - actual_feature.origin, other.spans
     middle, step = dot(apart, direction), dot(half, direction)
-    low, high = _stretch(middle, step, np.sqrt(dot(own.spans[0], own.spans[0])))
+    low, high = _stretch(middle, step, np.sqrt(dot(actual_feature.spans[0], actual_feature.spans[0])))
     aside, change = apart - middle * direction, half - step * direction
     start, end = (np.sqrt(dot(place, place)) for place in (aside + low * change, aside + high * change))
     return low <= high, start, end

@@ -34,9 +34,9 @@ class AssemblyPresenter:
         """Laws of deviations in their zones."""
         laws: dict[str, str] = {}
         sigmas: dict[str, float] = {}
-        for own in summary.measures.values():
-            laws |= own.laws or {}
-            sigmas |= own.law_sigmas_um or {}
+        for measure in summary.measures.values():
+            laws |= measure.laws or {}
+            sigmas |= measure.law_sigmas_um or {}
         return _lazily("tables").law_blocks(laws, sigmas) if laws else ()
 
     def measure_rows(self, measure: MeasureSummary, summary: RunSummary) -> "Sequence[FurtherRow]":

@@ -234,12 +234,12 @@ def bodies(placed: Placed, colours: Sequence[str] = COLOURS) -> tuple[Body, ...]
     """
     assembly, frames = placed.assembly, placed.frames
     places = np.array([frame[:3, 3] for frame in frames.values()])
-    extents = [float(np.ptp(own.shape.ends, axis=0).max()) for own in assembly.features.values()]
+    extents = [float(np.ptp(feature.shape.ends, axis=0).max()) for feature in assembly.features.values()]
     thickness = THIN * max(float(np.ptp(places, axis=0).max()), *extents)
     found = []
     for k, part in enumerate(assembly.parts):
         colour = colours[k % len(colours)]
-        named = [(own, frames[own.name]) for own in part.features if own.is_named]
+        named = [(feature, frames[feature.name]) for feature in part.features if feature.is_named]
         if part.solid is None:
             surface = partial(joined_symbols, tuple(named), thickness)
             found.append(Body(part.name, np.eye(4), surface, None, colour))

@@ -83,7 +83,7 @@ def mark(shape: Facts, thickness: float) -> Surface:
 def _(shape: Flat, thickness: float) -> Surface:
     half, wall = WALL * thickness / 2, (shape.nominal_size or 0.0) / 2
     heights = dict.fromkeys((-wall, wall))  # one of a face
-    return together([edges(shape.reach, thickness, own - half, own + half) for own in heights])
+    return together([edges(shape.reach, thickness, height - half, height + half) for height in heights])
 
 
 @mark.register
@@ -242,7 +242,7 @@ def _by_importance(assembly: Assembly) -> list[str]:
     ranks = {name: 3 for name, own in assembly.features.items() if own.is_named}
     ranks |= {name: 2 for name in ranks if assembly.features[name].moved_by}
     ranks |= {name: 1 for name in _datum_places(assembly) if name in ranks}
-    ranks |= {name: 0 for own in assembly.measures.values() for name in _read(own) if name in ranks}
+    ranks |= {name: 0 for measure in assembly.measures.values() for name in _read(measure) if name in ranks}
     return sorted(ranks, key=lambda name: ranks[name])
 
 

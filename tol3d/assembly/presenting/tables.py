@@ -45,8 +45,11 @@ class DatumFrameRow(RowOf[Freedoms]):
 def datum_blocks(assembly: Assembly) -> Sequence[PageItem]:
     """Which freedoms datums take."""
     rows = [
-        (f"{own.part}: {', '.join(own.name.split('|')[1:])}", DatumFrameRow(held_by_datums(assembly, own)))
-        for own in assembly.datum_frames.values()
+        (
+            f"{datum_frame.part}: {', '.join(datum_frame.name.split('|')[1:])}",
+            DatumFrameRow(held_by_datums(assembly, datum_frame)),
+        )
+        for datum_frame in assembly.datum_frames.values()
     ]
     return titled("datum frames, along the axes of their part", declared_table("", rows)) if rows else ()
 
@@ -65,7 +68,7 @@ def freedom_blocks(assembly: Assembly) -> Sequence[PageItem]:
     for move, plan in zip(assembly.moves, planned(assembly).moves, strict=True):
         found = held_by(assembly, plan) if len(move.parts) == 1 else None
         if found is None or not found.taken:
-            rows += [(move.name, HeldRow(*own)) for own in move.holds]
+            rows += [(move.name, HeldRow(*hold)) for hold in move.holds]
             continue
         rows += [(move.name, HeldRow(in_words(own), _by(own))) for own in found.taken]
         if found.left.count:
@@ -90,7 +93,7 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Features, moves, and what any system shows."""
     system = simulation.system
     assert isinstance(system, AssemblySystem)
-    return (*drawing_blocks(system), *system_blocks(simulation, {own.name for own in system.measures}))
+    return (*drawing_blocks(system), *system_blocks(simulation, {measure.name for measure in system.measures}))
 
 
 def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
@@ -136,13 +139,13 @@ class MoveRow(RowOf[Placer]):
 
 def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     """Features and moves."""
-    named = [own for part in system.assembly.parts for own in part.features if own.is_named]
+    named = [feature for part in system.assembly.parts for feature in part.features if feature.is_named]
     rows = [(own.name, FeatureRow(system, own)) for own in named]
     features = titled("features, nominally in the world", declared_table("", rows))
     plans = planned(system.assembly).moves
-    steps = titled("moves", declared_table("", [(own.move.name, MoveRow(own)) for own in plans]))
+    steps = titled("moves", declared_table("", [(plan.move.name, MoveRow(plan)) for plan in plans]))
     frames, freedoms = datum_blocks(system.assembly), freedom_blocks(system.assembly)
-    presented = ((at_path(path), own) for own in plans if (path := own.move.acts.presents))
+    presented = ((at_path(path), plan) for plan in plans if (path := plan.move.acts.presents))
     others = (item for presents, own in presented for item in presents(own, system.assembly))
     return (*_solids(system), *features, *_dimensions(system), *frames, *steps, *freedoms, *others)
 
@@ -157,12 +160,12 @@ class DimensionRow:
 
 def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:
     """Dimensions, and the effect of a positive deviation on each."""
-    named = {own.name for own in system.contributors if own.kind == "plus_minus"}
+    named = {contributor.name for contributor in system.contributors if contributor.kind == "plus_minus"}
     rows = [
-        (by.contributor, DimensionRow(own.name, _positive(system, own, by.matrix[:, 0])))
-        for own in system.assembly.features.values()
-        for by in own.moved_by
-        if own.is_named and by.contributor in named
+        (by.contributor, DimensionRow(feature.name, _positive(system, feature, by.matrix[:, 0])))
+        for feature in system.assembly.features.values()
+        for by in feature.moved_by
+        if feature.is_named and by.contributor in named
     ]
     return titled("dimensions, along the axes of their part", declared_table("", rows)) if rows else ()
 
@@ -207,7 +210,7 @@ class SolidRow:
 
 def _solids(system: AssemblySystem) -> Sequence[PageItem]:
     """Solids of parts, by builder, with their sizes."""
-    solids = {own.name: own.solid for own in system.assembly.parts if own.solid is not None}
+    solids = {part.name: part.solid for part in system.assembly.parts if part.solid is not None}
     rows = [(name, SolidRow(own, *bounding_box(own))) for name, own in solids.items()]
     return titled("solids, in the frames of their parts", declared_table("", rows)) if rows else ()
 

@@ -230,13 +230,15 @@ class PartTorsors:
             assert frame.gauges is not None
             rooms, datums = frame.gauges.rooms, self._datums(frame)
             kept = kept_by(frame, datums, self._columns, frame.regardless)
-            its = [(self._features[own.feature], self.feature(own.feature)) for own in rooms]
+            its = [(self._features[room.feature], self.feature(room.feature)) for room in rooms]
             later = [(own, *datums[frame.datums.index(own)][0]) for own in frame.later]
             self._rooms[name] = gauges_room(rooms, its, kept, self.size, self._columns, later, name)
         return self._rooms[name]
 
     def _datums(self, frame: DatumFrame) -> list[list[Displaced]]:
-        return [[(self._features[each], self.feature(each)) for each in datum.features] for datum in frame.datums]
+        return [
+            [(self._features[feature], self.feature(feature)) for feature in datum.features] for datum in frame.datums
+        ]
 
     def size(self, name: str) -> Array:
         """Deviation of a feature's size (columns,) [mm]."""

@@ -249,11 +249,11 @@ def _room(assembly: Assembly) -> int:
     Moves are followed once, and twice more for each measure that is read at an end of the rocking range.
     """
     frames = assembly.datum_frames.values()
-    datums = sum(len(own.datums) for own in frames)
-    datums += sum(len(own.datums) + 7 for own in frames if own.gauges is not None)
+    datums = sum(len(frame.datums) for frame in frames)
+    datums += sum(len(frame.datums) + 7 for frame in frames if frame.gauges is not None)
     rests = any(move.acts.rocks for move in assembly.moves)
-    played = sum(own.over_play is not None for own in assembly.measures.values())
-    rocking = sum(own.rocking is not None for own in assembly.measures.values()) if rests else 0
+    played = sum(measure.over_play is not None for measure in assembly.measures.values())
+    rocking = sum(measure.rocking is not None for measure in assembly.measures.values()) if rests else 0
     moved = sum(move.terms for move in assembly.moves)
     return datums + moved * (1 + 2 * rocking + played) + sum(map(_readings, assembly.measures.values()))
 

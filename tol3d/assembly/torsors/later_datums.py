@@ -185,7 +185,7 @@ def _(shape: Slot, datum: Datum, frame: Array, reach: float) -> list[tuple[Array
 def _(shape: Flat, datum: Datum, frame: Array, reach: float) -> list[tuple[Array, Array]]:
     centre, (x, y, z) = frame[:3, 3], frame[:3, :3].T
     if datum.targets is not None:
-        return [(_alone(height_at(frame[:3, :3] @ own + centre, z))[None], NO_CORNERS) for own in datum.targets]
+        return [(_alone(height_at(frame[:3, :3] @ target + centre, z))[None], NO_CORNERS) for target in datum.targets]
     height, corners = height_at(centre, z), NO_CORNERS
     if datum.simulator == "contact":
         ways = shape.rim @ np.array([shape.reach[0] * x, shape.reach[1] * y])

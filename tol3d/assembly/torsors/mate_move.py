@@ -24,7 +24,7 @@ def mated(move: Mate, world: World) -> World:
 def freedoms_after(move: Mate, world: World) -> Freedoms:
     """Freedoms after the relations: those decided and those left; as `mated`."""
     part = world.assembly.part[move.part]
-    points = [world.origin(name) for each in move.relations for name in (each.moving, each.target)]
+    points = [world.origin(name) for relation in move.relations for name in (relation.moving, relation.target)]
     freedoms = Freedoms(part.pose[:3, 3], points, world.columns.count)
     take_relations(freedoms, move, world)
     return freedoms
@@ -49,7 +49,7 @@ def _take(freedoms: Freedoms, relation: Relation, move: Mate | Rest, world: Worl
     """Take the freedoms of a relation; returns their number."""
     pairing = _Pairing(freedoms, relation, move, world)
     shapes = [world.assembly.features[name].shape for name in (relation.moving, relation.target)]
-    match relation.kind, *(own.surface for own in shapes):
+    match relation.kind, *(shape.surface for shape in shapes):
         case "coincident" | "distance", "plane", "plane":
             return pairing.parallel() + pairing.height(relation.distance)
         case "coincident" | "distance", "point", "plane":

@@ -302,8 +302,8 @@ def pattern(measured: Measured, world: World) -> Array:
     for k, (name, (x, y)) in enumerate(zip(measured.features, places - places.mean(axis=0), strict=True)):
         radius = 0.5 * bonuses[k] if bonuses else _constant(world, 0.0)
         ends = without_rounding(_at_ends(replace(measured, features=(name,)), world, sides))
-        for own in ends[: 1 if np.array_equal(ends[0], ends[-1]) else None]:
-            forms += [*own, radius]
+        for end in ends[: 1 if np.array_equal(ends[0], ends[-1]) else None]:
+            forms += [*end, radius]
             arms.append(np.array([-y, x]))
     rows = np.array(forms)
     term = CommonOpening(rows) if measured.gauge == "shift" else TurnedOpening(rows, np.array(arms))

@@ -40,15 +40,19 @@ def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
     free = np.linalg.qr(np.linalg.solve(to_torsor, left))[0] if left.shape[1] else left
     offsets, clearances, ways = [], [], []
     bolt_of, bolt_rows, bolts = list[int](), list[Array](), 0
-    for own in move.engagements:
-        found = _places(own, before, move.part) if own.bolt is None else _bolted(own, own.bolt, before, move.part)
+    for engagement in move.engagements:
+        found = (
+            _places(engagement, before, move.part)
+            if engagement.bolt is None
+            else _bolted(engagement, engagement.bolt, before, move.part)
+        )
         for rows, values, clearance, own_bolt in found:
             ways.append(rows @ to_torsor)
             offsets.append(values)
             clearances.append(clearance)
             bolt_rows.append(own_bolt)
-            bolt_of.append(-1 if own.bolt is None else bolts)
-        bolts += own.bolt is not None
+            bolt_of.append(-1 if engagement.bolt is None else bolts)
+        bolts += engagement.bolt is not None
     whole = np.array(ways)
     _, strengths, right = np.linalg.svd((whole @ free).reshape(2 * len(whole), free.shape[1]))
     free = free @ right[: int(np.sum(strengths > SEEN))].T
@@ -68,16 +72,16 @@ def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
     return before.with_part_at(move.part, torsor).with_slack(move.name, made[-1])
 
 
-def _points(own: Engagement, world: World) -> Array:
+def _points(engagement: Engagement, world: World) -> Array:
     """Nominal points of engagement in the world (places, 3)."""
-    frame, outer = world.frame(own.inner), world.frame(own.outer)
-    points = own.places @ frame[:3, :3].T + frame[:3, 3]
-    if own.bolt is None:
+    frame, outer = world.frame(engagement.inner), world.frame(engagement.outer)
+    points = engagement.places @ frame[:3, :3].T + frame[:3, 3]
+    if engagement.bolt is None:
         return points
-    return np.concatenate([points, own.outer_places @ outer[:3, :3].T + outer[:3, 3]])
+    return np.concatenate([points, engagement.outer_places @ outer[:3, :3].T + outer[:3, 3]])
 
 
-def _bolted(own: Engagement, bolt: Bolt, world: World, part: str) -> Sequence[tuple[Array, Array, Array, Array]]:
+def _bolted(engagement: Engagement, bolt: Bolt, world: World, part: str) -> Sequence[tuple[Array, Array, Array, Array]]:
     """As `_places`, of all ends of both holes of a bolt; last the rows (2, 4) of its two shifts and two leans.
 
     An offset is of the bolt from the hole.
@@ -85,7 +89,7 @@ def _bolted(own: Engagement, bolt: Bolt, world: World, part: str) -> Sequence[tu
     found, radius = [], world.columns.zeros(1)[0]
     for contribution in bolt.size_by:
         radius[contribution.columns] += contribution.matrix[0] / 2.0
-    for name, places in ((own.inner, own.places), (own.outer, own.outer_places)):
+    for name, places in ((engagement.inner, engagement.places), (engagement.outer, engagement.outer_places)):
         frame, moves = world.frame(name), world.is_of_body(name, part)
         directions = frame[:3, :2].T
         spare = ((world.assembly.features[name].shape.nominal_size or 0.0) - bolt.diameter) / 2.0
@@ -101,19 +105,19 @@ def _bolted(own: Engagement, bolt: Bolt, world: World, part: str) -> Sequence[tu
     return found
 
 
-def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, Array, Array, Array]]:
+def _places(engagement: Engagement, world: World, part: str) -> Sequence[tuple[Array, Array, Array, Array]]:
     """Rows (2, 6) of the part's torsor, offsets (2, columns), clearance (columns,) of each place; none for a bolt."""
-    frame, features = world.frame(own.inner), world.assembly.features
-    directions = counted(frame, features[own.inner].shape)
-    relative = world.placed(own.outer) - world.placed(own.inner)
-    sign = 1.0 if world.is_of_body(own.outer, part) else -1.0
-    inner, outer = (features[name].shape.nominal_size or 0.0 for name in (own.inner, own.outer))
-    outer *= _leaning(own, world)
-    clearance = (world.mating_size(own.inner) - world.mating_size(own.outer)) / 2.0
+    frame, features = world.frame(engagement.inner), world.assembly.features
+    directions = counted(frame, features[engagement.inner].shape)
+    relative = world.placed(engagement.outer) - world.placed(engagement.inner)
+    sign = 1.0 if world.is_of_body(engagement.outer, part) else -1.0
+    inner, outer = (features[name].shape.nominal_size or 0.0 for name in (engagement.inner, engagement.outer))
+    outer *= _leaning(engagement, world)
+    clearance = (world.mating_size(engagement.inner) - world.mating_size(engagement.outer)) / 2.0
     clearance = clearance + world.columns.constants(np.array([(inner - outer) / 2.0]))[0]
-    its_frame = world.frame(own.outer)
+    its_frame = world.frame(engagement.outer)
     found = []
-    for point, place in zip(_points(own, world), own.outer_places, strict=True):
+    for point, place in zip(_points(engagement, world), engagement.outer_places, strict=True):
         at = directions @ shift_at(point)
         apart = its_frame[:3, :3] @ place + its_frame[:3, 3] - point
         values = at @ relative + world.columns.constants(directions @ apart)
@@ -121,10 +125,10 @@ def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, A
     return found
 
 
-def _leaning(own: Engagement, world: World) -> float:
+def _leaning(engagement: Engagement, world: World) -> float:
     """Factor of the inner feature's size in the width that it takes in a slot where it leans nominally; 1 in a hole."""
-    inner, outer = (world.assembly.features[name].shape.located for name in (own.inner, own.outer))
-    along = world.frame(own.inner)[:3, inner].T @ world.frame(own.outer)[:3, outer]
+    inner, outer = (world.assembly.features[name].shape.located for name in (engagement.inner, engagement.outer))
+    along = world.frame(engagement.inner)[:3, inner].T @ world.frame(engagement.outer)[:3, outer]
     return float(np.linalg.norm(along)) if len(along) == 1 else 1.0
 
 

@@ -175,7 +175,7 @@ class Surfaces:
         ends = -shape.reach[0], shape.reach[0]
         pieces = [(middle[k], slope[k], flat.reach[k.start]) for k in flat.together]
         limits = [_within(float(m @ s), float(s @ s), float(m @ m) - reach * reach) for m, s, reach in pieces]
-        low, high = max(ends[0], *(own[0] for own in limits)), min(ends[1], *(own[1] for own in limits))
+        low, high = max(ends[0], *(limit[0] for limit in limits)), min(ends[1], *(limit[1] for limit in limits))
         tops = [self.world.origin(line) + end * axis for end in ((low, high) if low <= high else ends)]
         feet = [top - normal * (normal @ (top - self.world.origin(plane))) for top in tops]
         return list(zip(tops, feet, strict=True) if is_first else zip(feet, tops, strict=True))
@@ -215,7 +215,7 @@ class Surfaces:
         vectors = _distinct(vectors)
         if is_largest and not rows:
             return columns.largest(np.array(vectors))
-        rows = _distinct([*rows, *(columns.largest(own[None]) for own in vectors)])
+        rows = _distinct([*rows, *(columns.largest(vector[None]) for vector in vectors)])
         if len(rows) == 1:
             return rows[0]
         made: Array = columns.made_by(Ends(np.array(rows), is_largest=is_largest))[0]

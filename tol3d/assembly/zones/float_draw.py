@@ -60,7 +60,7 @@ class FloatDraw:
             (Group("plane", (own.start, own.start + 1)),) if law == "disc" else scalars(SIZES[law], own.start)
             for law, own in self._blocks
         )
-        return tuple(group for own in kinds for group in own)
+        return tuple(group for kind in kinds for group in kind)
 
     @cached_property
     def _blocks(self) -> tuple[tuple[Law, slice], ...]:

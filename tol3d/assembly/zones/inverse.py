@@ -73,9 +73,9 @@ class InverseTable:
         """Values (trials,) of w (trials,) in [0, 1]."""
         cell, place = _placed(w, CELLS)
         value: Array = self.coefficients[DEGREE].take(cell)
-        for own in self.coefficients[DEGREE - 1 :: -1]:
+        for coefficient in self.coefficients[DEGREE - 1 :: -1]:
             value *= place
-            value += own.take(cell)
+            value += coefficient.take(cell)
         return value
 
 

@@ -261,7 +261,7 @@ class UniformFlatEndsRound(UnitLaw):
         mass = WEIGHTS * leans(NODES, np.asarray(ratio))
         apart = ratio * np.cos(TURNS)
         squares = apart**2, (1.0 - apart) ** 2 / 3.0, (ratio * np.sin(TURNS)) ** 2 / 3.0
-        return _flat_covariance(*(float(mass @ own / mass.sum()) for own in squares))
+        return _flat_covariance(*(float(mass @ square / mass.sum()) for square in squares))
 
 
 def leans(z: Array, ratio: Array) -> Array:

@@ -58,7 +58,7 @@ class UniformRoundSurface(UnitLaw):
         of_size, *of_ends = uniforms
         left = (2.0 * np.minimum(of_size, 1.0 - of_size)) ** 0.2
         ends = UniformEnds().coordinates(1.0, *of_ends)
-        return np.copysign(1.0 - left, of_size - 0.5), *(left * own for own in ends)
+        return np.copysign(1.0 - left, of_size - 0.5), *(left * end for end in ends)
 
     def covariance(self, ratio: float) -> Array:
         """See UnitLaw: integrals of s^2 (1 - s)^4 and (1 - s)^6, over that of (1 - s)^4."""

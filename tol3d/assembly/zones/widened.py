@@ -151,9 +151,9 @@ class Bonus:
             return self.zone_at(draw.zone, own).support(gradient) + per_size * own
 
         knees = (self.low, self.high) + (() if self.envelope is None else (self.envelope.knee,))
-        inner = (own for own in knees if size.low < own < size.high)
+        inner = (knee for knee in knees if size.low < knee < size.high)
         places = sorted({size.low, size.high, *inner})
-        found = [reached(own) for own in places]
+        found = [reached(place) for place in places]
         for start, stop in pairwise(places):
             best = minimize_scalar(
                 lambda own: -reached(own), bounds=(start, stop), method="bounded", options={"xatol": SIZE_XTOL}

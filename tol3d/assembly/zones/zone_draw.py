@@ -198,7 +198,7 @@ class Confined(ZoneDraw):
         return self._drawn(*self.zone.halves(width, orientation), uniforms)
 
     def _drawn(self, half: Ratio, ratio: Ratio, uniforms: tuple[Array, ...]) -> tuple[Array, ...]:
-        first, *others = (half * own for own in self.law.coordinates(ratio, *uniforms))
+        first, *others = (half * coordinate for coordinate in self.law.coordinates(ratio, *uniforms))
         return (first if self.zone.centre == 0.0 else first + self.zone.centre, *others)
 
     def furthest(self, gradient: Array) -> Array:
@@ -304,7 +304,7 @@ class Process(ZoneDraw):
 
 def laws_told(contributors: Iterable[Contributor]) -> dict[str, Any]:
     """Laws of contributors in words and sigmas of middles [um], by their names, as a summary has them of a measure."""
-    drawn = {own.name: own.draw for own in contributors}
+    drawn = {contributor.name: contributor.draw for contributor in contributors}
     laws = {name: draw.words for name, draw in drawn.items() if isinstance(draw, JointDraw)}
     sigmas = {name: 1e3 * draw.middle_sigma for name, draw in drawn.items() if isinstance(draw, ZoneDraw)}
     return ({"laws": laws} if laws else {}) | ({"law_sigmas_um": sigmas} if sigmas else {})

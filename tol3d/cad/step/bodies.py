@@ -72,7 +72,7 @@ def bodies_of(file: Part21, structure: Structure) -> tuple[Body, ...]:
 def _unit(file: Part21, representations: tuple[int, ...]) -> float:
     """One unit of length of a product's representation, in mm."""
     contexts = (representation(file, own)[1] for own in representations)
-    return next((length_unit(file, own).factor for own in contexts), 1.0)
+    return next((length_unit(file, context).factor for context in contexts), 1.0)
 
 
 def names_of(file: Part21, faces: frozenset[int]) -> dict[int, str]:
@@ -99,12 +99,12 @@ def colours_of(file: Part21, body: Body) -> dict[int, str]:
 
 def layers_of(file: Part21) -> tuple[str, ...]:
     """Names of the layers of a file, each once."""
-    return tuple(dict.fromkeys(own.text(0) for own in file.records("PRESENTATION_LAYER_ASSIGNMENT")))
+    return tuple(dict.fromkeys(record.text(0) for record in file.records("PRESENTATION_LAYER_ASSIGNMENT")))
 
 
 def _colour(file: Part21, styles: tuple[Reference, ...]) -> str:
     """The first colour of surfaces that styles lead to; "" if they state none."""
-    stack, seen = [(int(own), 0) for own in reversed(styles)], set(map(int, styles))
+    stack, seen = [(int(style), 0) for style in reversed(styles)], set(map(int, styles))
     while stack:
         number, depth = stack.pop()
         instance = file[number]

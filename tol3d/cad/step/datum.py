@@ -56,7 +56,7 @@ class Datum:
     @property
     def faces(self) -> tuple[int, ...]:
         """The faces of its features, else of its targets."""
-        named = self.features or tuple(each.feature for each in self.targets)
+        named = self.features or tuple(target.feature for target in self.targets)
         return tuple(dict.fromkeys(face for each in named for face in each.faces))
 
 
@@ -86,7 +86,7 @@ class Compartment:
     @property
     def letters(self) -> str:
         """Letters as a frame prints them without modifiers: `A`, `E-F-G`."""
-        return "-".join(each.letter for each in self.references)
+        return "-".join(reference.letter for reference in self.references)
 
 
 def datum_letter(file: Part21, identifier: int) -> str:
@@ -106,11 +106,9 @@ def read_datum(features: Features, identifier: int) -> Datum:
         for relating, related, _ in features.relationships
         if identifier in (relating, related) and relating != related
     ]
-    targets = [each for each in ends if file[each].record(*TARGETS) is not None]
+    targets = [end for end in ends if file[end].record(*TARGETS) is not None]
     named = [
-        features.named(each)
-        for each in ends
-        if each not in targets and file[each].record("DATUM", "DATUM_SYSTEM") is None
+        features.named(end) for end in ends if end not in targets and file[end].record("DATUM", "DATUM_SYSTEM") is None
     ]
     if not any(each.groups for each in named):
         own = features.named(identifier)  # some exporters hang the faces on the datum itself
@@ -119,7 +117,7 @@ def read_datum(features: Features, identifier: int) -> Datum:
         identifier,
         datum_letter(file, identifier),
         tuple(named),
-        tuple(read_target(features, each) for each in sorted(set(targets))),
+        tuple(read_target(features, target) for target in sorted(set(targets))),
     )
 
 
@@ -154,7 +152,7 @@ def read_systems(file: Part21, identifiers: tuple[Reference, ...]) -> tuple[Comp
         instance = file[identifier]
         system = instance.record("DATUM_SYSTEM")
         if system is not None:
-            found.extend(read_compartment(file, each) for each in system.references(-1))
+            found.extend(read_compartment(file, reference) for reference in system.references(-1))
             continue
         old = instance.needed("DATUM_REFERENCE", "REFERENCED_MODIFIED_DATUM")
         modifiers = tuple(modifier_words(file, old)) if old.keyword == "REFERENCED_MODIFIED_DATUM" else ()
@@ -177,14 +175,14 @@ def read_compartment(file: Part21, identifier: int) -> Compartment:
     modifiers = tuple(modifier_words(file, record))
     if isinstance(base, Reference):
         return Compartment(identifier, (DatumReference(int(base), datum_letter(file, base), modifiers),), ())
-    elements = [file[each].needed(*REFERENCES) for each in record.references(-2)]
+    elements = [file[reference].needed(*REFERENCES) for reference in record.references(-2)]
     if not elements:
         raise record.wrong(len(record) - 2, "at least one datum")
     references = tuple(
         DatumReference(
-            int(each.reference(-2)), datum_letter(file, each.reference(-2)), tuple(modifier_words(file, each))
+            int(element.reference(-2)), datum_letter(file, element.reference(-2)), tuple(modifier_words(file, element))
         )
-        for each in elements
+        for element in elements
     )
     return Compartment(identifier, references, modifiers)
 

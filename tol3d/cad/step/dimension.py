@@ -163,13 +163,13 @@ class Dimensions:
         nominal = named.get("nominal value") or named.get("")
         kind, features = self.sides(instance)
         minus, plus, fit = self.range_of(identifier)
-        roles = [ROLES[each] for each in notes if each in ROLES]
+        roles = [ROLES[note] for note in notes if note in ROLES]
         return Dimension(
             identifier,
             features[0].name,
             kind,
             features,
-            directed=any(each.keyword.startswith("DIRECTED") for each in instance.records),
+            directed=any(record.keyword.startswith("DIRECTED") for record in instance.records),
             role=roles[0] if roles else "toleranced",
             nominal=nominal,
             minus=minus,
@@ -177,15 +177,15 @@ class Dimensions:
             least=named.get("lower limit"),
             most=named.get("upper limit"),
             fit=fit,
-            notes=tuple(each for each in notes if each not in ROLES),
+            notes=tuple(note for note in notes if note not in ROLES),
         )
 
     def qualifiers(self, item: Instance) -> list[str]:
         """The words beside a value: `maximum` of a single limit such as R2 MAX."""
         record = item.record("QUALIFIED_REPRESENTATION_ITEM")
-        listed = [self.file[each] for each in record.references(-1)] if record is not None else []
+        listed = [self.file[reference] for reference in record.references(-1)] if record is not None else []
         words = [each.needed("TYPE_QUALIFIER").text(0).strip() for each in listed if each.record("TYPE_QUALIFIER")]
-        return [each for each in words if each in ("maximum", "minimum", "average")]
+        return [word for word in words if word in ("maximum", "minimum", "average")]
 
     def sides(self, instance: Instance) -> tuple[str, tuple[NamedFeature, ...]]:
         """The kind of a dimension, and its features."""

@@ -110,7 +110,7 @@ def nearest(point: Array, corners: Array) -> float:
     inside = np.ones(len(normal), dtype=bool)
     for start, end in ((a, b), (b, c), (c, a)):
         inside &= (np.cross(end[flat] - start[flat], point - start[flat]) * normal).sum(axis=1) >= 0.0
-    return float(min(np.abs(above[inside]).min(initial=np.inf), *(own.min() for own in distances)))
+    return float(min(np.abs(above[inside]).min(initial=np.inf), *(distance.min() for distance in distances)))
 
 
 def _from_segments(point: Array, start: Array, end: Array) -> Array:

@@ -192,7 +192,7 @@ class Features:
 
     def keywords(self, identifier: int) -> set[str]:
         """The entities that an instance is."""
-        return {each.keyword for each in self.file[identifier].records}
+        return {record.keyword for record in self.file[identifier].records}
 
 
 def identified(record: Record) -> Iterator[int]:

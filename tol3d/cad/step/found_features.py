@@ -413,9 +413,9 @@ def _one_circle(edges: Sequence[Edge]) -> bool:
     """True if arcs are of one circle."""
     first = edges[0]
     return all(
-        abs(own.radii[0] - first.radii[0]) < SAME_PLACE
-        and float(np.linalg.norm(np.subtract(own.centre, first.centre))) < SAME_PLACE
-        for own in edges
+        abs(edge.radii[0] - first.radii[0]) < SAME_PLACE
+        and float(np.linalg.norm(np.subtract(edge.centre, first.centre))) < SAME_PLACE
+        for edge in edges
     )
 
 

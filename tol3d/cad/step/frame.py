@@ -55,7 +55,7 @@ AREA_SIGNS: Final = {"circular": "⌀", "square": "□", "rectangular": ""}
 def frame(tolerance: Tolerance) -> str:
     """The frame of a tolerance, numbers in the file's own units, compartments separated by bars."""
     sign = SYMBOLS.get(tolerance.kind, tolerance.kind)
-    return " | ".join((sign, value(tolerance), *(compartment(each) for each in tolerance.datums)))
+    return " | ".join((sign, value(tolerance), *(compartment(datum) for datum in tolerance.datums)))
 
 
 def value(tolerance: Tolerance) -> str:
@@ -77,15 +77,15 @@ def value(tolerance: Tolerance) -> str:
 def basis(per_unit: PerUnit) -> str:
     """The length or the area that a magnitude is for."""
     sides = [per_unit.size, *([per_unit.second] if per_unit.second is not None else [])]
-    return AREA_SIGNS.get(per_unit.area, "") + "×".join(plain(each.written) for each in sides)
+    return AREA_SIGNS.get(per_unit.area, "") + "×".join(plain(side.written) for side in sides)
 
 
 def compartment(datums: Compartment) -> str:
     """One compartment of datums: `A`, `A Ⓜ`, `E Ⓜ-F Ⓜ`."""
-    letters = "-".join(" ".join((each.letter, *signs(each.modifiers))) for each in datums.references)
+    letters = "-".join(" ".join((reference.letter, *signs(reference.modifiers))) for reference in datums.references)
     return " ".join((letters, *signs(datums.modifiers)))
 
 
 def signs(modifiers: tuple[str, ...]) -> list[str]:
     """Modifiers as signs."""
-    return [MODIFIER_SIGNS.get(each, each) for each in modifiers]
+    return [MODIFIER_SIGNS.get(modifier, modifier) for modifier in modifiers]

@@ -23,13 +23,13 @@ class Instance:
     @property
     def keyword(self) -> str:
         """The entity of a simple instance; those of a complex one joined by +."""
-        return "+".join(each.keyword for each in self.records)
+        return "+".join(record.keyword for record in self.records)
 
     def record(self, *keywords: str) -> "Record | None":
         """The first record that is one of these entities, or None."""
-        for each in self.records:
-            if each.keyword in keywords:
-                return Record(self, each.keyword, each.arguments)
+        for record in self.records:
+            if record.keyword in keywords:
+                return Record(self, record.keyword, record.arguments)
         return None
 
     def needed(self, *keywords: str) -> "Record":

@@ -101,12 +101,12 @@ class Meanings:
             if meaning.how != "left out" and each.kind in LOCATIONS and each.above is None:
                 for face in each.feature.faces:
                     located.setdefault(face, each.id)
-        return tuple(found[each.id] for each in self.text.tolerances)
+        return tuple(found[tolerance.id] for tolerance in self.text.tolerances)
 
     @cached_property
     def by_id(self) -> dict[int, Tolerance]:
         """The tolerances by their instances."""
-        return {each.id: each for each in self.text.tolerances}
+        return {tolerance.id: tolerance for tolerance in self.text.tolerances}
 
     @cached_property
     def datum_shapes(self) -> dict[int, Shape]:
@@ -119,11 +119,11 @@ class Meanings:
     def datum_features(self) -> dict[int, NamedFeature]:
         """The feature from which each datum is taken: what the file names, else the flat faces at its targets."""
         found: dict[int, NamedFeature] = {}
-        for each in self.text.datums:
-            if len(each.features) == 1:
-                found[each.id] = each.features[0]
-            elif each.targets and not each.features and (faces := self.faces_at(each)):
-                found[each.id] = replace(each.targets[0].feature, groups=(faces,))
+        for datum in self.text.datums:
+            if len(datum.features) == 1:
+                found[datum.id] = datum.features[0]
+            elif datum.targets and not datum.features and (faces := self.faces_at(datum)):
+                found[datum.id] = replace(datum.targets[0].feature, groups=(faces,))
         return found
 
     def faces_at(self, datum: Datum) -> tuple[int, ...]:
@@ -143,7 +143,7 @@ class Meanings:
 
     def datum(self, reference: DatumReference) -> Datum | None:
         """The datum that a frame refers to; in a file of several parts their letters may be the same."""
-        own = next((each for each in self.text.datums if each.id == reference.datum), None)
+        own = next((datum for datum in self.text.datums if datum.id == reference.datum), None)
         return own if own is not None and own.letter == reference.letter else self.text.datum(reference.letter)
 
     def datum_shape(self, compartment: Compartment) -> Shape | None:
@@ -226,25 +226,25 @@ class Meanings:
     def datum_obstacle(self, compartment: Compartment) -> str:
         """Reason why a compartment of a datum system cannot be said; empty if it can."""
         shapes: list[Shape] = []
-        for each in compartment.references:
-            datum = self.datum(each)
+        for reference in compartment.references:
+            datum = self.datum(reference)
             if datum is None:
-                return f"datum {each.letter}, which the file does not have"
+                return f"datum {reference.letter}, which the file does not have"
             shape = self.datum_shapes.get(datum.id)
             if shape is None and datum.targets:
-                return f"datum {each.letter} at its targets, of which the file says no place"
+                return f"datum {reference.letter} at its targets, of which the file says no place"
             if shape is None or shape.kind not in DATUM_SHAPES:
-                return f"datum {each.letter} of {shape.words if shape else 'no single feature'}"
-            if set(each.modifiers) - MATERIAL:
-                return f"datum {each.letter} with {', '.join(sorted(set(each.modifiers) - MATERIAL))}"
-            if each.modifiers and shape.kind == "cone":
-                return f"datum {each.letter} of a cone at its boundary"
+                return f"datum {reference.letter} of {shape.words if shape else 'no single feature'}"
+            if set(reference.modifiers) - MATERIAL:
+                return f"datum {reference.letter} with {', '.join(sorted(set(reference.modifiers) - MATERIAL))}"
+            if reference.modifiers and shape.kind == "cone":
+                return f"datum {reference.letter} of a cone at its boundary"
             shapes.append(shape)
         return self.together_obstacle(compartment, shapes)
 
     def together_obstacle(self, compartment: Compartment, shapes: Sequence[Shape]) -> str:
         """Why the features of a compartment cannot be one datum; empty where they can, or where there is one."""
-        surfaces = [own for shape in shapes for own in shape.surfaces]
+        surfaces = [surface for shape in shapes for surface in shape.surfaces]
         kinds = {shape.kind for shape in shapes}
         if len(shapes) == 1 and shapes[0].kind != "cylinders":
             return ""
@@ -253,21 +253,21 @@ class Meanings:
             return f"{what} of {' and '.join(shape.words for shape in shapes)}"
         if len(surfaces) > MOST_TOGETHER:
             return f"{what} of {len(surfaces)} features: a datum has {MOST_TOGETHER} at most"
-        if not all(aligned(surfaces[0].direction, own.direction) for own in surfaces):
+        if not all(aligned(surfaces[0].direction, surface.direction) for surface in surfaces):
             return f"{what} of features that are not parallel"
-        bounded = [set(each.modifiers) & MATERIAL for each in compartment.references]
+        bounded = [set(reference.modifiers) & MATERIAL for reference in compartment.references]
         if any(own != bounded[0] for own in bounded):
             return f"{what} at different boundaries of its features"
         return ""
 
     def is_pattern(self, compartment: Compartment) -> bool:
         """True if a compartment is of features beside each other; False of one, and of holes or pins on one axis."""
-        known = [self.datum(each) for each in compartment.references]
+        known = [self.datum(reference) for reference in compartment.references]
         shapes = [self.datum_shapes.get(own.id) for own in known if own is not None]
-        first, *others = [surface for own in shapes if own is not None for surface in own.surfaces]
-        if not others or [own.kind for own in shapes if own is not None] == ["slot"]:
+        first, *others = [surface for shape in shapes if shape is not None for surface in shape.surfaces]
+        if not others or [shape.kind for shape in shapes if shape is not None] == ["slot"]:
             return False
-        return first.kind == "plane" or not all(first.is_coaxial_with(own) for own in others)
+        return first.kind == "plane" or not all(first.is_coaxial_with(other) for other in others)
 
     def kind_and_loss(self, tolerance: Tolerance, shape: Shape) -> tuple[str, str]:
         """The kind in the scene, and its loss; empty for none."""
@@ -289,7 +289,7 @@ class Meanings:
         """Loss of a profile: faces that are not of some kinds."""
         if tolerance.feature.whole:
             return "it is of the largest flat faces alone that nothing else names"
-        lost = sorted({each.kind for each in shape.surfaces} - {*kinds})
+        lost = sorted({surface.kind for surface in shape.surfaces} - {*kinds})
         words = {"cone": "cones", "torus": "tori", "other": "free forms"}
         return f"its {' and '.join(words[own] for own in lost)} are left out" if lost else ""
 
@@ -324,14 +324,14 @@ class Meanings:
         """Loss of the lower segment of a pattern, which has its modifiers and datums from the upper one."""
         if set(tolerance.modifiers) & MATERIAL != set(above.modifiers) & MATERIAL:
             return "its bonus is that of the upper segment"
-        letters = [[each.letters for each in own.datums] for own in (tolerance, above)]
+        letters = [[datum.letters for datum in own.datums] for own in (tolerance, above)]
         if letters[0] != letters[1][: len(letters[0])]:
             return f"its datums are not the first of #{above.id}: it only limits what is inspected"
         return ""
 
     def refining_loss(self, tolerance: Tolerance, location: Tolerance) -> str:
         """Loss of an orientation that cannot refine the location zone of its feature."""
-        letters = [[each.letters for each in own.datums] for own in (tolerance, location)]
+        letters = [[datum.letters for datum in own.datums] for own in (tolerance, location)]
         if letters[0] != letters[1][: len(letters[0])]:
             return f"its datums are not the first of #{location.id}: it only limits what is inspected"
         if location.kind == "circular runout":
@@ -343,8 +343,10 @@ class Meanings:
 
     def limited(self, tolerance: Tolerance, axis: Vector) -> Vector | None:
         """The one direction in which a width limits an axis: across the last flat datum along it; None if none is."""
-        shapes = (self.datum_shape(each) for each in reversed(tolerance.datums))
-        flat = (own.surfaces[0].direction for own in shapes if own is not None and own.kind in ("plane", "slot"))
+        shapes = (self.datum_shape(datum) for datum in reversed(tolerance.datums))
+        flat = (
+            shape.surfaces[0].direction for shape in shapes if shape is not None and shape.kind in ("plane", "slot")
+        )
         return next((own for own in flat if abs(dot(own, axis)) < SQUARE), None)
 
     def turn_loss(self, tolerance: Tolerance, shape: Shape, location: Tolerance) -> str:
@@ -352,7 +354,7 @@ class Meanings:
         datum = self.datum_shape(tolerance.datums[0]) if len(tolerance.datums) == 1 else None
         if datum is None or len(location.datums) < 2 or not shape.surfaces or not datum.surfaces:
             return ""
-        if all(aligned(each.direction, datum.surfaces[0].direction) != 0 for each in shape.surfaces):
+        if all(aligned(surface.direction, datum.surfaces[0].direction) != 0 for surface in shape.surfaces):
             return ""
         letter = tolerance.datums[0].letters
         zone = f"here its zone is that of #{location.id}, which limits the turn"
@@ -360,7 +362,11 @@ class Meanings:
 
     def modifier_loss(self, tolerance: Tolerance) -> str:
         """Loss of the modifiers of a tolerance."""
-        lost = [DROPPED.get(each, f"{each} is dropped") for each in tolerance.modifiers if each not in MATERIAL]
+        lost = [
+            DROPPED.get(modifier, f"{modifier} is dropped")
+            for modifier in tolerance.modifiers
+            if modifier not in MATERIAL
+        ]
         if set(tolerance.modifiers) & MATERIAL and not self.has_size(tolerance.feature):
             lost.append("without a size that has limits there is no bonus")
         if tolerance.maximum is not None:
@@ -369,18 +375,23 @@ class Meanings:
 
     def boundary_loss(self, tolerance: Tolerance) -> str:
         """Loss of datums at their boundary in words: their bonus counts from a size, which has to have limits."""
-        references = [own for each in tolerance.datums for own in each.references if set(own.modifiers) & MATERIAL]
-        known = [self.datum(own) for own in references]
+        references = [
+            reference
+            for datum in tolerance.datums
+            for reference in datum.references
+            if set(reference.modifiers) & MATERIAL
+        ]
+        known = [self.datum(reference) for reference in references]
         if all(own is not None and self.has_size(self.datum_features[own.id]) for own in known):
             return ""
-        letters = "-".join(own.letter for own in references)
+        letters = "-".join(reference.letter for reference in references)
         return f"without sizes that have limits datum {letters} is taken regardless of size"
 
     def has_size(self, feature: NamedFeature) -> bool:
         """True if a dimension with limits is of the same faces."""
         faces = set(feature.faces)
-        sizes = [each for each in self.text.dimensions if each.is_size and each.limits is not None]
-        return any(faces & set(each.features[0].faces) for each in sizes)
+        sizes = [dimension for dimension in self.text.dimensions if dimension.is_size and dimension.limits is not None]
+        return any(faces & set(size.features[0].faces) for size in sizes)
 
 
 def unphysical(tolerance: Tolerance) -> str:

@@ -91,27 +91,27 @@ class StepText:
             yield from dimension.features
         for datum in self.datums:
             yield from datum.features
-            yield from (each.feature for each in datum.targets)
+            yield from (target.feature for target in datum.targets)
 
     @cached_property
     def faces_of(self) -> dict[int, set[int]]:
         """Faces of every tolerance, dimension, datum and datum feature."""
-        found: dict[int, set[int]] = {each.id: set(each.feature.faces) for each in self.tolerances}
+        found: dict[int, set[int]] = {tolerance.id: set(tolerance.feature.faces) for tolerance in self.tolerances}
         for dimension in self.dimensions:
-            found[dimension.id] = {face for each in dimension.features for face in each.faces}
+            found[dimension.id] = {face for feature in dimension.features for face in feature.faces}
         for datum in self.datums:
             found[datum.id] = set(datum.faces)
-            found |= {each.id: set(datum.faces) for each in datum.features}
-            found |= {each.id: set(each.feature.faces) for each in datum.targets}
+            found |= {feature.id: set(datum.faces) for feature in datum.features}
+            found |= {target.id: set(target.feature.faces) for target in datum.targets}
         return found
 
     def datum(self, letter: str) -> Datum | None:
         """The datum of a letter."""
-        return next((each for each in self.datums if each.letter == letter), None)
+        return next((datum for datum in self.datums if datum.letter == letter), None)
 
     def product(self, feature: NamedFeature) -> int | None:
         """The product that a feature is of: by its faces, else by its shape."""
-        by_face = next((self.structure.product_of_face.get(each) for each in feature.faces), None)
+        by_face = next((self.structure.product_of_face.get(face) for face in feature.faces), None)
         return by_face if by_face is not None else self.structure.product_of_shape.get(feature.shape)
 
 
@@ -158,13 +158,13 @@ def incomplete(text: StepText) -> Iterator[Remark]:
     for product in text.structure.products.values():
         if not product.faces and product.id not in text.structure.inside:
             yield Remark(product.id, f"product {product.name}", "has neither solids nor faces")
-    for each in text.tolerances:
-        what = f"tolerance {each.name}".strip()
-        if each.magnitude is None:
-            yield Remark(each.id, what, "states no value")
-        if each.kind not in SYMBOLS:
-            yield Remark(each.id, what, "states no kind of tolerance")
-        yield from incomplete_feature(each.id, what, each.feature)
+    for tolerance in text.tolerances:
+        what = f"tolerance {tolerance.name}".strip()
+        if tolerance.magnitude is None:
+            yield Remark(tolerance.id, what, "states no value")
+        if tolerance.kind not in SYMBOLS:
+            yield Remark(tolerance.id, what, "states no kind of tolerance")
+        yield from incomplete_feature(tolerance.id, what, tolerance.feature)
     for dimension in text.dimensions:
         what = f"dimension {dimension.name}".strip()
         if dimension.nominal is None and dimension.limits is None:
@@ -198,7 +198,7 @@ def unnamed(text: StepText, features: Features) -> Iterator[Remark]:
 
     Those that only a note points at are not among them.
     """
-    seen = {aspect: None for each in text.features for aspect in each.aspects}
+    seen = {aspect: None for feature in text.features for aspect in feature.aspects}
     told: set[int] = set()
     for shown in shown_together(text.file).values():
         own = [each for each in shown if each in text.faces_of]
@@ -212,7 +212,7 @@ def unnamed(text: StepText, features: Features) -> Iterator[Remark]:
         for each in aspects:
             features.groups(each, seen)
     for aspect, items in features.items.items():
-        if aspect not in seen and any(features.keywords(each) & FACES for each in items):
+        if aspect not in seen and any(features.keywords(item) & FACES for item in items):
             yield Remark(aspect, "feature", "has faces that no tolerance, dimension, datum or note refers to")
 
 
@@ -233,12 +233,12 @@ PER_RADIUS: Final = {"diameter": 2.0, "radius": 1.0, "spherical diameter": 2.0, 
 
 def measured(dimension: Dimension, surfaces: Mapping[int, Surface]) -> float | None:
     """The size or the distance that the surfaces have [mm]; None if they are not of one size, or not parallel."""
-    sides = [merged([surfaces[face] for face in each.faces if face in surfaces]) for each in dimension.features]
+    sides = [merged([surfaces[face] for face in feature.faces if face in surfaces]) for feature in dimension.features]
     if dimension.kind in PER_RADIUS and sides[0]:
         radii = [each.radius for each in sides[0] if each.radius and each.kind != "cone"]
         same = bool(radii) and max(radii) - min(radii) < SAME_PLACE
         return PER_RADIUS[dimension.kind] * radii[0] if same else None
-    if dimension.kind != "linear distance" or [len(each) for each in sides] != [1, 1]:
+    if dimension.kind != "linear distance" or [len(side) for side in sides] != [1, 1]:
         return None
     first, second = sides[0][0], sides[1][0]
     if first.kind != "plane" or second.kind != "plane" or not aligned(first.direction, second.direction):
@@ -248,11 +248,11 @@ def measured(dimension: Dimension, surfaces: Mapping[int, Surface]) -> float | N
 
 def disagreements(text: StepText, surfaces: Mapping[int, Surface]) -> Iterator[Remark]:
     """A remark on each dimension whose nominal is not that of its faces."""
-    for each in text.dimensions:
-        found = measured(each, surfaces)
-        if found is not None and each.nominal is not None and abs(found - each.nominal.value) > NOMINAL_XTOL:
-            what = f"dimension {each.name}".strip()
-            yield Remark(each.id, what, f"is {each} where its faces have {found:.4f} mm")
+    for dimension in text.dimensions:
+        found = measured(dimension, surfaces)
+        if found is not None and dimension.nominal is not None and abs(found - dimension.nominal.value) > NOMINAL_XTOL:
+            what = f"dimension {dimension.name}".strip()
+            yield Remark(dimension.id, what, f"is {dimension} where its faces have {found:.4f} mm")
 
 
 @dataclass(frozen=True)
@@ -284,12 +284,25 @@ def named_in(text: StepText) -> Iterator[Named]:
     """Everything in a file that names faces, in its order."""
     for datum in text.datums:
         yield Named(datum.id, "datum", datum.letter, "", None, "", f"datum {datum.letter}", datum.faces)
-    for own in text.tolerances:
-        value = None if own.magnitude is None or own.magnitude.unit.dimension != "length" else own.magnitude.value
-        words = frame(own)
-        yield Named(own.id, "tolerance", own.name, own.kind, value, _letters(own), words, tuple(own.feature.faces))
-    for each in text.dimensions:
-        yield Named(each.id, "dimension", each.name, "", None, "", str(each), _faces(each.features))
+    for tolerance in text.tolerances:
+        value = (
+            None
+            if tolerance.magnitude is None or tolerance.magnitude.unit.dimension != "length"
+            else tolerance.magnitude.value
+        )
+        words = frame(tolerance)
+        yield Named(
+            tolerance.id,
+            "tolerance",
+            tolerance.name,
+            tolerance.kind,
+            value,
+            _letters(tolerance),
+            words,
+            tuple(tolerance.feature.faces),
+        )
+    for dimension in text.dimensions:
+        yield Named(dimension.id, "dimension", dimension.name, "", None, "", str(dimension), _faces(dimension.features))
 
 
 def _faces(features: Sequence[NamedFeature]) -> tuple[int, ...]:
@@ -298,8 +311,8 @@ def _faces(features: Sequence[NamedFeature]) -> tuple[int, ...]:
 
 def _letters(tolerance: Tolerance) -> str:
     """The letters of its datums, without their modifiers."""
-    return " | ".join(_of(own) for own in tolerance.datums)
+    return " | ".join(_of(datum) for datum in tolerance.datums)
 
 
 def _of(compartment: Compartment) -> str:
-    return "-".join(own.letter for own in compartment.references)
+    return "-".join(reference.letter for reference in compartment.references)

@@ -79,7 +79,7 @@ class Part21:
         found: dict[str, list[int]] = {}
         for identifier, (start, end) in self.spans.items():
             first = FIRST_KEYWORD.match(self.text, start, end)
-            words = [first.group().upper()] if first else [each.keyword for each in self[identifier].records]
+            words = [first.group().upper()] if first else [record.keyword for record in self[identifier].records]
             for word in words:
                 found.setdefault(word, []).append(identifier)
         return MappingProxyType({word: tuple(ids) for word, ids in found.items()})

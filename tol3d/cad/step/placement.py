@@ -111,7 +111,7 @@ def representation(file: Part21, identifier: int) -> tuple[tuple[int, ...], int]
     """The items of a representation, and its context."""
     instance = file[identifier]
     record = instance.record("REPRESENTATION") or instance.inherited("REPRESENTATION")
-    return tuple(int(each) for each in record.references(1)), int(record.reference(2))
+    return tuple(int(reference) for reference in record.references(1)), int(record.reference(2))
 
 
 def length_unit(file: Part21, context: int) -> Unit:
@@ -122,15 +122,17 @@ def length_unit(file: Part21, context: int) -> Unit:
     """
     instance = file[context]
     assigned = instance.needed("GLOBAL_UNIT_ASSIGNED_CONTEXT")
-    for each in assigned.references(-1):
-        if file[each].record("LENGTH_UNIT") is not None or "LENGTH_UNIT" in file[each].keyword:
-            return unit_of(file, each)
+    for reference in assigned.references(-1):
+        if file[reference].record("LENGTH_UNIT") is not None or "LENGTH_UNIT" in file[reference].keyword:
+            return unit_of(file, reference)
     raise StepError(f"{instance.place}: expected a unit of length in the context")
 
 
 def represented(file: Part21, definition: int) -> tuple[tuple[int, int], ...]:
     """The items that properties of a shape aspect represent, each with its context."""
-    properties = {each.instance.id for each in file.records("PROPERTY_DEFINITION") if each.argument(2) == definition}
+    properties = {
+        record.instance.id for record in file.records("PROPERTY_DEFINITION") if record.argument(2) == definition
+    }
     used = chain(file.records("SHAPE_DEFINITION_REPRESENTATION"), file.records("PROPERTY_DEFINITION_REPRESENTATION"))
     found: dict[tuple[int, int], None] = {}
     for each in used:

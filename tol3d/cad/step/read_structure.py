@@ -79,8 +79,8 @@ class StructureReader:
         Raises:
             StepError: its content cannot be read, or a part stands in another file.
         """
-        products = {each: self.product(each) for each in self.definitions}
-        occurrences = tuple(self.occurrence(each, products) for each in self.file.records(USES[0]))
+        products = {definition: self.product(definition) for definition in self.definitions}
+        occurrences = tuple(self.occurrence(record, products) for record in self.file.records(USES[0]))
         structure = Structure(self.file.name, products, (*occurrences, *self.bare_maps(products)))
         self.refuse_other_files(structure)
         return structure
@@ -91,18 +91,18 @@ class StructureReader:
         representations = self.represented_by(definition)
         items = list(dict.fromkeys(item for each in representations for item in representation(self.file, each)[0]))
         solids = tuple(self.solid(each) for each in self.mapped(items) if self.file[each].record(*SOLIDS) is not None)
-        solid_faces = {face for each in solids for face in each.faces}
-        others = [each for each in items if self.file[each].record(*SOLIDS) is None and self.is_surface(each)]
-        loose = dict.fromkeys(face for each in others for face in self.faces_under(each) if face not in solid_faces)
+        solid_faces = {face for solid in solids for face in solid.faces}
+        others = [item for item in items if self.file[item].record(*SOLIDS) is None and self.is_surface(item)]
+        loose = dict.fromkeys(face for other in others for face in self.faces_under(other) if face not in solid_faces)
         return Product(definition, self.product_name(definition), shape, solids, tuple(loose))
 
     def mapped(self, items: Iterable[int]) -> Iterator[int]:
         """Items without those that show another representation."""
-        return (each for each in items if self.file[each].record("MAPPED_ITEM") is None)
+        return (item for item in items if self.file[item].record("MAPPED_ITEM") is None)
 
     def is_surface(self, identifier: int) -> bool:
         """True if an item of a representation is made of faces."""
-        words = {each.keyword for each in self.file[identifier].records}
+        words = {record.keyword for record in self.file[identifier].records}
         return bool(
             words & {"SHELL_BASED_SURFACE_MODEL", "OPEN_SHELL", "CLOSED_SHELL", "FACE_BASED_SURFACE_MODEL", *FACES}
         )
@@ -120,7 +120,7 @@ class StructureReader:
         while stack:
             identifier = stack.pop()
             instance = self.file[identifier]
-            if any(each.keyword in FACES for each in instance.records):
+            if any(record.keyword in FACES for record in instance.records):
                 yield identifier
                 continue
             named = [each for record in instance.records for each in references_in(record.arguments)]
@@ -178,7 +178,7 @@ class StructureReader:
     def bare_maps(self, products: dict[int, Product]) -> Iterator[Occurrence]:
         """Parts that stand in an assembly by a MAPPED_ITEM alone, beyond its uses in the parts list."""
         used = list(self.uses.values())
-        related = {self.uses[each] for each in self.uses if self.shapes.get(each) in self.relations}
+        related = {self.uses[use] for use in self.uses if self.shapes.get(use) in self.relations}
         for parent in self.definitions:
             seen: dict[int, int] = {}
             for item, own in self.mapped_items(parent):
@@ -281,8 +281,8 @@ class StructureReader:
 
     def refuse_other_files(self, structure: Structure) -> None:
         """Refuse parts whose shape stands in another file."""
-        files = [each.instance.inherited("DOCUMENT").text(0) for each in self.file.records("DOCUMENT_FILE")]
-        named = [each.text(0) for each in self.file.records("APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT")]
+        files = [record.instance.inherited("DOCUMENT").text(0) for record in self.file.records("DOCUMENT_FILE")]
+        named = [record.text(0) for record in self.file.records("APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT")]
         empty = [
             each
             for each in structure.products.values()
@@ -310,10 +310,10 @@ def reached(roots: Iterable[int], related: dict[int, tuple[int, ...]]) -> list[i
 
 def references_in(arguments: tuple[Value, ...]) -> Iterator[int]:
     """All references in the arguments of a record, at any depth that the parser allows."""
-    for each in arguments:
-        if isinstance(each, Reference):
-            yield int(each)
-        elif isinstance(each, Typed):
-            yield from references_in(each.arguments)
-        elif isinstance(each, tuple):
-            yield from references_in(each)
+    for argument in arguments:
+        if isinstance(argument, Reference):
+            yield int(argument)
+        elif isinstance(argument, Typed):
+            yield from references_in(argument.arguments)
+        elif isinstance(argument, tuple):
+            yield from references_in(argument)

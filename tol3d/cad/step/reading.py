@@ -171,13 +171,13 @@ class StepFile:
     @cached_property
     def faces(self) -> Faces:
         """Faces of the file, read by Open CASCADE."""
-        return _geometry(self.content, [own.body for own in self.read.parts])[0]
+        return _geometry(self.content, [part.body for part in self.read.parts])[0]
 
     @cached_property
     def parts(self) -> tuple[StepPart, ...]:
         """Its products with geometry of their own, in the order of the file."""
         return tuple(
-            StepPart(self, own.body, own.features, own.names, own.named, own.colours) for own in self.read.parts
+            StepPart(self, part.body, part.features, part.names, part.named, part.colours) for part in self.read.parts
         )
 
     def part(self, product: str | None, use: str | None = None) -> StepPart:
@@ -188,9 +188,9 @@ class StepFile:
         """
         if use is not None:
             number = self.use(use).product
-            return next(own for own in self.parts if own.body.product == number)
-        names = [own.name for own in self.parts]
-        fitting = self.parts if product is None else [own for own in self.parts if own.name == product]
+            return next(part for part in self.parts if part.body.product == number)
+        names = [part.name for part in self.parts]
+        fitting = self.parts if product is None else [part for part in self.parts if part.name == product]
         if len(fitting) == 1:
             return fitting[0]
         listed = _listed(names)
@@ -215,9 +215,9 @@ class StepFile:
         Raises:
             StepError: there is none.
         """
-        found = next((own for own in self.uses if own.path == path), None)
+        found = next((use for use in self.uses if use.path == path), None)
         if found is None:
-            known = [own.path for own in self.uses]
+            known = [use.path for use in self.uses]
             near = hint(path, known)
             raise StepError(
                 f"expected a use in {self.name}, got {path!r}, which is none{near}; it has {_listed(known)}"
@@ -226,7 +226,7 @@ class StepFile:
 
 
 def _listed(names: Sequence[str]) -> str:
-    return ", ".join(repr(shown(own)) for own in names[:8]) + (", …" if len(names) > 8 else "")
+    return ", ".join(repr(shown(name)) for name in names[:8]) + (", …" if len(names) > 8 else "")
 
 
 def read_step(content: FileContent) -> StepFile:
@@ -257,7 +257,7 @@ def read_step(content: FileContent) -> StepFile:
 
 def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh, named: Sequence[Named]) -> ReadPart:
     names, colours = names_of(text, body.faces | body.loose), colours_of(text, body)
-    found = (replace(own, on=mesh.middle(own.faces)) for own in _shell(body, faces).features)
+    found = (replace(feature, on=mesh.middle(feature.faces)) for feature in _shell(body, faces).features)
     features = tuple(_described(own, names, colours) for own in found)
     own = body.faces | body.loose
     return ReadPart(body, features, names, tuple(each for each in named if own & {*each.faces}), colours)
@@ -266,7 +266,7 @@ def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh, named: Se
 def _described(feature: FoundFeature, names: Mapping[int, str], colours: Mapping[int, str]) -> FoundFeature:
     """A feature with the names and the colour that the file gives its faces."""
     ids = (*feature.faces, *feature.repeated)
-    found = {colours.get(own, "") for own in feature.faces}
+    found = {colours.get(face, "") for face in feature.faces}
     colour = found.pop() if len(found) == 1 else ""
     return replace(feature, names=tuple(dict.fromkeys(names[own] for own in ids if own in names)), colour=colour)
 
@@ -329,7 +329,7 @@ def _checked(answer: Any, text: Part21, bodies: Sequence[Body], *, deep: bool = 
         if missing := sorted(body.faces - of_solids):
             words = f"Open CASCADE reads {len(body.faces) - len(missing)} of {len(body.faces)} faces"
             raise StepError(f"{text.place(missing[0])}: {words}; mend the solid in the CAD system and export it again")
-    if stray := sorted(of_solids - {own for body in bodies for own in body.faces}):
+    if stray := sorted(of_solids - {face for body in bodies for face in body.faces}):
         raise StepError(f"{text.place(stray[0])}: the solid of this face belongs to no product")
     if deep:
         by_id = found.by_id

@@ -106,17 +106,17 @@ def _of_faces(part: StepPart, selector: Selector) -> FoundFeature:
 
 def _fitting(part: StepPart, selector: Selector) -> list[FoundFeature]:
     """The features that match a selector, wherever they lie."""
-    found = [own for own in part.features if not own.loose]
+    found = [feature for feature in part.features if not feature.loose]
     if selector.face is not None:
-        found = [own for own in part.features if selector.face in (*own.faces, *own.repeated)]
+        found = [feature for feature in part.features if selector.face in (*feature.faces, *feature.repeated)]
         if not found:
             raise SelectionError(
                 f"expected a face of {shown(part.name)!r}, got #{selector.face} of something else", "face"
             )
     if selector.name is not None:
-        found = [own for own in part.features if selector.name in own.names]
+        found = [feature for feature in part.features if selector.name in feature.names]
         if not found:
-            known = sorted({name for own in part.features for name in own.names})
+            known = sorted({name for feature in part.features for name in feature.names})
             got = f"got {shown(selector.name)!r}, which is none"
             raise SelectionError(f"expected the name of a face, {got}{hint(selector.name, known)}", "face")
     if (field := _by_drawing(selector)) is not None:
@@ -152,13 +152,13 @@ def _named(part: StepPart, selector: Selector, field: str) -> list[FoundFeature]
         )
     faces = list(dict.fromkeys(face for own in fitting for face in own.faces))
     found = []
-    for own in part.features:
-        here = [face for face in faces if face in own.faces]
-        if own.kind == "plane" and here and len(here) < len(own.faces):
+    for feature in part.features:
+        here = [face for face in faces if face in feature.faces]
+        if feature.kind == "plane" and here and len(here) < len(feature.faces):
             exact = part.shell.made_of(here)
-            found.append(replace(exact, names=own.names, colour=own.colour, on=part.mesh().middle(here)))
-        elif here or set(faces) & {*own.repeated}:
-            found.append(own)
+            found.append(replace(exact, names=feature.names, colour=feature.colour, on=part.mesh().middle(here)))
+        elif here or set(faces) & {*feature.repeated}:
+            found.append(feature)
     if not found:
         words = "; ".join(shown(own.words) for own in fitting[:MOST_SHOWN])
         raise SelectionError(f"expected an item with faces, got {words} without faces on this part", field)
@@ -272,7 +272,7 @@ def _lines(part: StepPart, found: Sequence[FoundFeature]) -> str:
 
 def numbers(feature: FoundFeature) -> str:
     """The faces of a feature: "#12, #34"."""
-    return ", ".join(f"#{own}" for own in feature.faces)
+    return ", ".join(f"#{face}" for face in feature.faces)
 
 
 def names(found: Sequence[FoundFeature]) -> Iterator[str]:

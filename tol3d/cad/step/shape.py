@@ -55,7 +55,7 @@ class Shape:
 
     def of_kinds(self, *kinds: SurfaceKind) -> list[Surface]:
         """Its surfaces of some kinds."""
-        return [each for each in self.surfaces if each.kind in kinds]
+        return [surface for surface in self.surfaces if surface.kind in kinds]
 
     @property
     def is_bored(self) -> bool:
@@ -85,15 +85,16 @@ def kind_of(surfaces: list[Surface]) -> ShapeKind:
     """Kind of several surfaces together, each given once."""
     if not surfaces:
         return "nothing"
-    kinds = {each.kind for each in surfaces}
+    kinds = {surface.kind for surface in surfaces}
     first = surfaces[0]
     if kinds == {"plane"}:
         if len(surfaces) == 2 and aligned(first.direction, surfaces[1].direction) < 0:
             return "slot"
         return "plane" if len(surfaces) == 1 else "planes"
     same_size = all(
-        abs(each.radius - first.radius) < 1e-4 and (each.same_sense, each.slant) == (first.same_sense, first.slant)
-        for each in surfaces
+        abs(surface.radius - first.radius) < 1e-4
+        and (surface.same_sense, surface.slant) == (first.same_sense, first.slant)
+        for surface in surfaces
     )  # mm, as SAME_PLACE
     if kinds == {"cylinder"} and same_size:
         return "cylinder" if len(surfaces) == 1 else "cylinders"

@@ -111,14 +111,14 @@ class Structure:
     def inside(self) -> dict[int, tuple[tuple[str, Occurrence], ...]]:
         """Contents of each assembly, with names that are unique in it."""
         found: dict[int, list[Occurrence]] = {}
-        for each in self.occurrences:
-            found.setdefault(each.parent, []).append(each)
+        for occurrence in self.occurrences:
+            found.setdefault(occurrence.parent, []).append(occurrence)
         return {parent: tuple(zip(unique(used), used, strict=True)) for parent, used in found.items()}
 
     @cached_property
     def tops(self) -> tuple[int, ...]:
         """The products that are used in none."""
-        used = {each.product for each in self.occurrences}
+        used = {occurrence.product for occurrence in self.occurrences}
         return tuple(each for each in self.products if each not in used)
 
     @cached_property
@@ -139,7 +139,7 @@ class Structure:
 
     def walked(self) -> Iterator[Leaf]:
         """The leaves, depth first with a stack of its own, in the file's order."""
-        names = unique([self.products[each] for each in self.tops])
+        names = unique([self.products[top] for top in self.tops])
         stack = [
             (Leaf((), (), top, IDENTITY), frozenset((top,)), name)
             for top, name in zip(reversed(self.tops), reversed(names), strict=True)

@@ -120,7 +120,7 @@ def product_unit(file: Part21, product: Product) -> Unit | None:
 def merged(surfaces: list[Surface]) -> list[Surface]:
     """The surfaces without those that continue an earlier one: the halves of a hole, an interrupted plane."""
     found: list[Surface] = []
-    for each in surfaces:
-        if not any(each.is_one_with(other) for other in found):
-            found.append(each)
+    for surface in surfaces:
+        if not any(surface.is_one_with(other) for other in found):
+            found.append(surface)
     return found

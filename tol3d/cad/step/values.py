@@ -196,6 +196,6 @@ def records_of(items: list[Value]) -> tuple[Typed, ...]:
     records = (found,) if isinstance(found, Typed) else found
     if not isinstance(records, tuple) or not records:
         raise StepError("expected one entity, or several in brackets")
-    if any(not isinstance(each, Typed) for each in records):
+    if any(not isinstance(record, Typed) for record in records):
         raise StepError("expected only entities in the brackets of a complex instance")
-    return tuple(each for each in records if isinstance(each, Typed))
+    return tuple(record for record in records if isinstance(record, Typed))

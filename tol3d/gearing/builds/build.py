@@ -10,12 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.builds.displacements import (
-    CENTRE,
-    FLANK_OFFSET,
-    FLANK_TURN,
-    OFFSET,
-    SLOTS,
-    TURN,
     AnyDisplacement,
     Displacement,
     FlankOffsets,
@@ -24,6 +18,7 @@ from tol3d.gearing.builds.displacements import (
     displacements,
 )
 from tol3d.gearing.builds.flank_offsets import FlankDeviations, FlankPlaces
+from tol3d.gearing.builds.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, OFFSET, SLOTS, TURN
 from tol3d.gearing.model import Model
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array

@@ -1,9 +1,4 @@
-"""Displacements of gears in their meshes by effects: used by builds, their rates and compiled builds.
-
-Slots of the sums of a seat: shift and turn of its axis, its gear's centre, its flanks.
-
-Nothing is imported here: kernels are recompiled if a module that they import changes.
-"""
+"""Displacements of gears in their meshes by effects: used by builds, their rates and compiled builds."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,6 +6,7 @@ from functools import singledispatch
 
 import numpy as np
 
+from tol3d.gearing.builds.slots import CENTRE, FLANK_TURN, OFFSET, TURN
 from tol3d.gearing.effects import (
     AxesOffset,
     AxisOffset,
@@ -171,11 +167,3 @@ def _(effect: ToothThickness, model: Model, components: int) -> Iterator[Displac
 def _(effect: TurningOffset, model: Model, components: int) -> Iterator[Displacement]:
     for seat in model.seats_of(effect.part):
         yield Displacement(seat, CENTRE, effect.plane.seen_from(-model.seats[seat].ahead).matrix)
-
-
-OFFSET = 0  # x, y, z of the axis [mm], in the seat's frame at rest
-TURN = 3  # rotation vector of the axis [rad], in the same frame
-CENTRE = 6  # x, y of the gear's centre off its axis [mm], in the gear's frame
-FLANK_TURN = 8  # by which each flank is turned out of its tooth [rad]
-FLANK_OFFSET = 9  # by which each flank lies outside that, along its normal [mm]
-SLOTS = 10

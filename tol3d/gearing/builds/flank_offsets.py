@@ -17,7 +17,7 @@ from tol3d.gearing.builds.displacements import FlankOffsets, displacements
 from tol3d.gearing.effects import FORM, SHAPES, SLOPE, UNIFORM, FlankDeviation
 from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import SpurGear
-from tol3d.gears.toothed_gear import RIGHT, Flank
+from tol3d.gears.flank import RIGHT, Flank
 from tol3d.numerics.arrays import Array
 
 Integers = NDArray[np.int64]

@@ -9,19 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.builds.build import Build
-from tol3d.gearing.builds.displacements import (
-    CENTRE,
-    FLANK_OFFSET,
-    FLANK_TURN,
-    OFFSET,
-    SLOTS,
-    TURN,
-    Displacement,
-    FlankOffsets,
-    Growth,
-    PivotShift,
-    displacements,
-)
+from tol3d.gearing.builds.displacements import Displacement, FlankOffsets, Growth, PivotShift, displacements
+from tol3d.gearing.builds.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, OFFSET, SLOTS, TURN
 from tol3d.gearing.model import Model
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array

@@ -42,7 +42,7 @@ class NormalPitchDraw(PitchDraw):
         for side in range(len(self.sides)):
             full, *others = uniforms[side * count : (side + 1) * count]
             singles = centred([standard_normal.ppf(u) for u in others])
-            length = np.sqrt(_added([own * own for own in singles]))
+            length = np.sqrt(_added([single * single for single in singles]))
             index = list(accumulate(singles))
             spread = np.maximum.reduce(index) - np.minimum.reduce(index)
             scale = self._size(full, self.limits.cumulative * length / spread) / length

@@ -1,7 +1,4 @@
-"""Interface of an engine: signed gaps of candidate tooth pairs, with contact points and normals.
-
-Status of a mesh that was brought to contact; a larger code is worse, for less is known of the build.
-"""
+"""Interface of an engine: signed gaps of candidate tooth pairs, with contact points and normals."""
 
 import importlib
 from collections.abc import Mapping
@@ -13,20 +10,11 @@ from numpy.typing import NDArray
 
 from tol3d.cad.solids import FlankStrips
 from tol3d.gearing.builds.build import Build
+from tol3d.gearing.engines.status import INTERFERES, STATUS_TEXT
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gears import Flank
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.outcome import Statuses
-
-OK: Final = 0
-INTERFERES: Final = 1
-NO_CONTACT: Final = 2
-OUT_OF_RANGE: Final = 3
-
-STATUS_TEXT: Final = {OK: "ok", INTERFERES: "interferes", NO_CONTACT: "no contact", OUT_OF_RANGE: "out of range"}
-"""INTERFERES: the non-working flanks overlap, by what a measure below 0 says. OUT_OF_RANGE: so far from nominal that
-other teeth may meet, or do, where one tooth is looked at and has left the path of contact."""
-
 
 Teeth = NDArray[np.int64]
 

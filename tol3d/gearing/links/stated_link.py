@@ -49,7 +49,7 @@ class LinkTrials:
 
     def of(self, kind: str) -> Array:
         """Components (trials, components) of the contributors of a kind, added up; 0 where there is none."""
-        own = [self.deviations[each.name] for each in self.contributors if each.kind == kind]
+        own = [self.deviations[contributor.name] for contributor in self.contributors if contributor.kind == kind]
         return np.asarray(sum(own, np.zeros((len(self), 1))))
 
 
@@ -285,7 +285,7 @@ class StatedLink(ABC):
         """The theory as a sum; None where it is none."""
         if not self.adds_up:
             return None
-        widths = [len(each.draw.components) for each in contributors]
+        widths = [len(contributor.draw.components) for contributor in contributors]
         rows = np.concatenate([np.zeros((1, sum(widths))), np.eye(sum(widths))])
         plays = self.analytic(_seen(contributors, rows, np.zeros((len(rows), 1)))).play[:, 0]
         rates = np.split(plays[1:] - plays[0], np.cumsum(widths)[:-1])
@@ -301,7 +301,7 @@ class StatedLink(ABC):
         if what == "play" and one_law and (whole := self.sum_of(seen.contributors)):
             shape = seen.angles.shape
             return {name: np.broadcast_to(np.array(own), (*shape, len(own))) for name, own in whole.rates.items()}
-        return {each.name: self._differences(seen, each.name, what) for each in seen.contributors}
+        return {contributor.name: self._differences(seen, contributor.name, what) for contributor in seen.contributors}
 
     def _differences(self, seen: LinkTrials, name: str, what: str) -> Array:
         own = seen.deviations[name]
@@ -325,8 +325,8 @@ def _moved(seen: LinkTrials, name: str, step: Array) -> LinkTrials:
 def _seen(contributors: Sequence[Contributor], rows: Array, angles: Array) -> LinkTrials:
     """Deviations (trials, components of all) at angles."""
     found, start = {}, 0
-    for each in contributors:
-        width = len(each.draw.components)
-        found[each.name] = rows[:, start : start + width]
+    for contributor in contributors:
+        width = len(contributor.draw.components)
+        found[contributor.name] = rows[:, start : start + width]
         start += width
     return LinkTrials(contributors, found, angles)

@@ -11,8 +11,8 @@ from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engi
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.model.flank_margin import margin_of
 from tol3d.gears import Displaced, Flank, driver_teeth_at_one_tooth
+from tol3d.gears.flank import opposite
 from tol3d.gears.pair import candidate_teeth
-from tol3d.gears.toothed_gear import opposite
 from tol3d.numerics.arrays import Array
 
 Status = NDArray[np.int8]

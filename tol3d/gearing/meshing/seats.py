@@ -14,7 +14,7 @@ from tol3d.gearing.meshing.mesh import Meshing, MeshSeat
 from tol3d.gearing.model import Backlash, Kind, LostMotion, Measure, Mesh, Model, TransmissionError
 from tol3d.gearing.play.linked import as_built
 from tol3d.gearing.play.play import Play, SeatKey, seat_keys
-from tol3d.gears.toothed_gear import opposite
+from tol3d.gears.flank import opposite
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.trials import Trials
 

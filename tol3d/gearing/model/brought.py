@@ -50,7 +50,7 @@ class Brought:
     @property
     def owners(self) -> Mapping[str, BroughtLink]:
         """The link that has each part."""
-        return {part: own for own in self.links for part in own.parts}
+        return {part: link for link in self.links for part in link.parts}
 
 
 NOTHING: Final = Brought()
@@ -77,14 +77,14 @@ def brought_into(scene: Scene) -> Brought:
 def _refuse_shared(scene: Scene, own: Brought) -> None:
     """Refuse parts of two links, and of a link and a mesh."""
     owner: dict[str, str] = {}
-    for each in own.links:
-        for part in sorted(each.parts):
+    for link in own.links:
+        for part in sorted(link.parts):
             if part in owner:
                 words = f"expected parts of this move alone, got {part!r}, which {owner[part]!r} has"
-                raise scene.refuse(("moves", each.link.name), words)
-            owner[part] = each.link.name
+                raise scene.refuse(("moves", link.link.name), words)
+            owner[part] = link.link.name
             for mesh in meshes_of(part, scene.moves):
-                words = f"expected a gear that no other move has, got {part!r}, which {each.link.name!r} has"
+                words = f"expected a gear that no other move has, got {part!r}, which {link.link.name!r} has"
                 raise scene.refuse(("moves", mesh), f"{words}; put another gear on the same shaft")
 
 
@@ -109,9 +109,9 @@ def _refuse_other_ends(scene: Scene, own: Brought) -> None:
                 raise scene.refuse((*path, turned), f"{words} stand")
 
 
-def _not_an_end(own: BroughtLink, part: str) -> str:
-    ends = " or ".join(map(repr, own.ends))
-    return f"expected {ends} of {own.link.name!r}, got {part!r}, which no shaft of a train turns with"
+def _not_an_end(brought_link: BroughtLink, part: str) -> str:
+    ends = " or ".join(map(repr, brought_link.ends))
+    return f"expected {ends} of {brought_link.link.name!r}, got {part!r}, which no shaft of a train turns with"
 
 
 # what a mechanism brings ----------------------------------------------------------------------------
@@ -157,7 +157,7 @@ def with_shared_shafts(
         SceneError: a tolerance moves a shaft otherwise, or a part that its link does not let run out.
     """
     owners, found = own.owners, []
-    links = {each.link.name: each.link for each in own.links}
+    links = {link.link.name: link.link for link in own.links}
     for contributor in contributors:
         effects = contributor.effect.singles
         moved = [(effect, part) for effect in effects if (part := str(getattr(effect, "part", ""))) in owners]
@@ -173,4 +173,4 @@ def with_shared_shafts(
             kept = (effect for effect in effects if effect not in [of_a_link for of_a_link, _ in moved])
             contributor = replace(contributor, effect=together((*kept, *inside)))
         found.append(contributor)
-    return replace(own, links=tuple(replace(each, link=links[each.link.name]) for each in own.links)), tuple(found)
+    return replace(own, links=tuple(replace(link, link=links[link.link.name]) for link in own.links)), tuple(found)

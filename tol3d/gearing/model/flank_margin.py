@@ -8,7 +8,7 @@ import numpy as np
 from tol3d.gearing.effects import SHAPES, FlankDeviation
 from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import GearPair, SpurGear
-from tol3d.gears.toothed_gear import RIGHT
+from tol3d.gears.flank import RIGHT
 
 MARGINS: Final = (0.35, 0.6, 0.85)
 """Pitches beyond CONTACT_MARGIN to try: the first sufficient one is taken."""
@@ -47,10 +47,10 @@ def _steps(model: Model, mesh: Mesh, name: str) -> float:
     """Largest excess of a gear's flank over its neighbours in some builds [mm]."""
     gear, generator = mesh.gear(name), np.random.Generator(np.random.Philox(key=1))
     flanks = np.zeros((gear.teeth, 2, SHAPES, SAMPLE))
-    for own in model.contributors:
-        for effect in own.effect.singles:
+    for contributor in model.contributors:
+        for effect in contributor.effect.singles:
             if isinstance(effect, FlankDeviation) and effect.part == name:
-                drawn = own.draw.deviations(*(1.0 - generator.random((own.draw.uniforms, SAMPLE))))
+                drawn = contributor.draw.deviations(*(1.0 - generator.random((contributor.draw.uniforms, SAMPLE))))
                 for component, place, shape, factor in effect.terms:
                     flanks[place.tooth, int(place.flank != RIGHT), shape] += factor * drawn[component]
     size = np.einsum("tfsn,s->tfn", np.abs(flanks[:, :, 1:]), LARGEST[1:])

@@ -65,12 +65,12 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
         sign = spec.sign_in(ring=isinstance(gear, InternalGear))
         if sentence := _whole_sizes(spec, scene, "tooth thickness", gear.section_thickness):
             raise scene.refuse(path, sentence)
-        thinnest, left = min(sign * own for own in law.extremes) * arc, gear.section_thickness
+        thinnest, left = min(sign * extreme for extreme in law.extremes) * arc, gear.section_thickness
         if -thinnest >= gear.section_tip:
             words = f"expected teeth of {spec.of!r} ({left:.4g} mm thick) that are thinner by less than "
             words += f"{gear.section_tip:.4g} mm, where their flanks meet at the tip, got {thinnest:.4g} mm"
             raise scene.refuse(path, f"{words}; {THICKNESS.advice}")
-        if min(sign * own for own in law.extremes) > 0.0:
+        if min(sign * extreme for extreme in law.extremes) > 0.0:
             words = "expected teeth that are thinner than nominal, got thicker ones in every build"
             yield warned(
                 path, f"{words}; allowances of a drawing are {'positive' if sign < 0.0 else 'negative'}: check the sign"
@@ -182,7 +182,7 @@ def jumping(model: Model, measure: Measure) -> Measure:
     """The measure; if single teeth deviate it jumps from position to position, as they come into contact."""
     meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
     gears = {gear for mesh in meshes for gear in (mesh.driver, mesh.driven)}
-    jumps = any(own.effect.deviates_teeth(gear) for own in model.contributors for gear in gears)
+    jumps = any(contributor.effect.deviates_teeth(gear) for contributor in model.contributors for gear in gears)
     return replace(measure, positions=replace(measure.positions, jumps=True)) if jumps else measure
 
 

@@ -69,7 +69,7 @@ def links_between_shafts(
 
 def carriers(meshes: Sequence[Mesh], shafts: Sequence[Shaft]) -> dict[str, tuple[str, Carried]]:
     """The shaft that carries each gear, and how; a gear that none carries is its own shaft."""
-    carrying = {own.gear: (shaft.name, own) for shaft in shafts for own in shaft.carries}
+    carrying = {carry.gear: (shaft.name, carry) for shaft in shafts for carry in shaft.carries}
     for gear in (gear for mesh in meshes for gear in (mesh.driver, mesh.driven)):
         carrying.setdefault(gear, (gear, Carried(gear)))
     return carrying

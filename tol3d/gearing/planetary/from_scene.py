@@ -32,41 +32,41 @@ from tol3d.scene.place import KeyPath
 HALF: Final = Implausible(0.5)
 
 
-def _implausible(scene: Scene, own: PlanetarySet) -> tuple[str, ...]:
+def _implausible(scene: Scene, planetary_set: PlanetarySet) -> tuple[str, ...]:
     """Warnings of a set.
 
     Raises:
         SceneError: a tooth is thinned until nothing is left of its tip.
     """
-    made = made_gears(scene, own)
-    return (*implausible_teeth(scene, made), *_pins(scene, own, made))
+    made = made_gears(scene, planetary_set)
+    return (*implausible_teeth(scene, made), *_pins(scene, planetary_set, made))
 
 
-def _pins(scene: Scene, own: PlanetarySet, made: Made) -> Iterator[str]:
+def _pins(scene: Scene, planetary_set: PlanetarySet, made: Made) -> Iterator[str]:
     """Pins off by more than half of a module; planets that overlap where all pins are at their worst places."""
-    smallest, half_angle = min(own.gears, key=lambda gear: gear.module), math.pi / own.planets
-    pitch, taken = 2 * own.centre_distance * math.sin(half_angle), 0.0
-    room = pitch - 2 * max(made[gear.name].tip_radius for gear in own.gears)
-    for path, spec in _of_pins(scene, own):
+    smallest, half_angle = min(planetary_set.gears, key=lambda gear: gear.module), math.pi / planetary_set.planets
+    pitch, taken = 2 * planetary_set.centre_distance * math.sin(half_angle), 0.0
+    room = pitch - 2 * max(made[gear.name].tip_radius for gear in planetary_set.gears)
+    for path, spec in _of_pins(scene, planetary_set):
         far, low = _reach(scene, spec)
         if sentence := HALF.sentence(f"the module of {smallest.name!r}", smallest.module, far):
             yield warned(path, sentence)
         radial = isinstance(spec, PlanetPinSpec) and spec.direction == "radial"
         taken += -2 * low * math.sin(half_angle) if radial else 2 * abs(far)
-    if own.planets > 1 and taken > room > 0.0:
+    if planetary_set.planets > 1 and taken > room > 0.0:
         words = (
             f"expected planets that stay clear of their neighbours, whose pins are {pitch:.4g} mm apart, got planets "
         )
         words += f"that overlap by up to {taken - room:.4g} mm where pins are at their worst places"
-        yield warned(("moves", own.name, "planets"), f"{words}; check the units of the pins' places")
+        yield warned(("moves", planetary_set.name, "planets"), f"{words}; check the units of the pins' places")
 
 
-def _of_pins(scene: Scene, own: PlanetarySet) -> Iterator[tuple[KeyPath, PlanetPinSpec | BorePositionSpec]]:
+def _of_pins(scene: Scene, planetary_set: PlanetarySet) -> Iterator[tuple[KeyPath, PlanetPinSpec | BorePositionSpec]]:
     for name, pin in scene.of(PlanetPinSpec).items():
-        if pin.of == own.carrier:
+        if pin.of == planetary_set.carrier:
             yield ("tolerances", name, "distribution"), pin
     for name, bore in scene.of(BorePositionSpec).items():
-        if bore.of == own.carrier:
+        if bore.of == planetary_set.carrier:
             yield ("tolerances", name), bore
 
 
@@ -116,23 +116,24 @@ def _leaf_spring(carrier: Any) -> LeafSpring | None:
     return LeafSpring(carrier.force.internal, *others)
 
 
-def _measure(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> ReducerMeasure:
+def _measure(scene: Scene, planetary_set: PlanetarySet, name: str, spec: Any) -> ReducerMeasure:
     if not isinstance(spec, PlanetaryMeasureSpec):
         words = "planetary_lost_motion, planetary_low_stiffness or planetary_transmission_error"
         raise scene.refuse(("measures", name, "kind"), f"expected of a planetary set {words}, got {spec.kind}")
-    if isinstance(spec, PlanetaryLowStiffnessSpec) and not any(spring.pushes for spring in own.springs):
+    if isinstance(spec, PlanetaryLowStiffnessSpec) and not any(spring.pushes for spring in planetary_set.springs):
         words = "expected a set on a flexible carrier whose springs press"
-        raise scene.refuse(("measures", name, "of"), f"{words}, got {own.name!r}, where none does")
+        raise scene.refuse(("measures", name, "of"), f"{words}, got {planetary_set.name!r}, where none does")
     if isinstance(spec, PlanetaryTransmissionErrorSpec):
         if spec.over == "long_period":
-            turns = own.period_planet_turns
+            turns = planetary_set.period_planet_turns
             raise scene.refuse(
                 ("measures", name, "over"),
                 f"expected turn, got long_period: the same teeth meet again as they did after {turns} turns of the "
-                f"planets on their pins, {float(own.period):.6g} turns of the output; take turn, one of the output",
+                f"planets on their pins, {float(planetary_set.period):.6g} turns of the output; "
+                "take turn, one of the output",
             )
-        return reducer_measure(name, spec, spec.flank, own.output, spec.take)
+        return reducer_measure(name, spec, spec.flank, planetary_set.output, spec.take)
     assert isinstance(spec, PlanetaryFreeTurnSpec)
     lost_motion = isinstance(spec, PlanetaryLostMotionSpec)
-    shaft = own.output if spec.at == "output" else own.input
+    shaft = planetary_set.output if spec.at == "output" else planetary_set.input
     return reducer_measure(name, spec, "lost motion" if lost_motion else "low stiffness", shaft)

@@ -13,17 +13,17 @@ from tol3d.study.system.system import KeyPath
 ROUNDING = 1e-9  # mm; no clearance is legal, and rounds to 1e-14
 
 
-def problems_at(own: PlanetarySet, deviated: Deviated, shaft: str) -> Iterator[tuple[KeyPath, str]]:
+def problems_at(planetary_set: PlanetarySet, deviated: Deviated, shaft: str) -> Iterator[tuple[KeyPath, str]]:
     """Meshes that overlap at the mean build, of one trial, then load paths of several planets that do."""
     jams = False
-    lower, upper = StackUp(own).sides(deviated, np.zeros(1))
-    room = (upper - lower).reshape(own.planets, -1).min(axis=0)
-    for mesh, backlash in zip(own.meshes, room, strict=True):
+    lower, upper = StackUp(planetary_set).sides(deviated, np.zeros(1))
+    room = (upper - lower).reshape(planetary_set.planets, -1).min(axis=0)
+    for mesh, backlash in zip(planetary_set.meshes, room, strict=True):
         if backlash < -ROUNDING:
             jams = True
-            yield ("moves", own.name, "meshes", mesh.central.name), _interfering(mesh, float(backlash))
+            yield ("moves", planetary_set.name, "meshes", mesh.central.name), _interfering(mesh, float(backlash))
     if not jams:
-        yield from _bound(own, deviated, shaft)
+        yield from _bound(planetary_set, deviated, shaft)
 
 
 def _interfering(mesh: SetMesh, backlash: float) -> str:
@@ -36,20 +36,20 @@ def _interfering(mesh: SetMesh, backlash: float) -> str:
     )
 
 
-def _bound(own: PlanetarySet, deviated: Deviated, shaft: str) -> Iterator[tuple[KeyPath, str]]:
-    free = StackUp(own).free(deviated, np.zeros(1), shaft, own.opposite(shaft))
+def _bound(planetary_set: PlanetarySet, deviated: Deviated, shaft: str) -> Iterator[tuple[KeyPath, str]]:
+    free = StackUp(planetary_set).free(deviated, np.zeros(1), shaft, planetary_set.opposite(shaft))
     if free.status[0] == 1 and free.lacking[0] > ROUNDING:
-        planet, place = divmod(int(free.row[0]), len(own.meshes))
-        if any(not spring.pushes for spring in own.springs):
+        planet, place = divmod(int(free.row[0]), len(planetary_set.meshes))
+        if any(not spring.pushes for spring in planetary_set.springs):
             words = f"each contact that stops them lacks {1e3 * free.lacking[0]:.3f} um. Lessen the adjustment"
             yield (
-                ("parts", own.carrier, "adjustment"),
+                ("parts", planetary_set.carrier, "adjustment"),
                 f"the planets cannot be displaced that far at the mean build: {words}",
             )
             return
         yield (
-            ("moves", own.name),
-            f"the planets bind at the mean build: no turn of planet {planet + 1} fits {own.meshes[place].name} and the "
-            f"meshes that close a loop with it; each of them lacks {1e3 * free.lacking[0]:.3f} um along the line of "
-            "action. Thin the teeth, or bring pins and clocking nearer their nominal places",
+            ("moves", planetary_set.name),
+            f"the planets bind at the mean build: no turn of planet {planet + 1} fits "
+            f"{planetary_set.meshes[place].name} and the meshes that close a loop with it; each of them lacks "
+            f"{1e3 * free.lacking[0]:.3f} um along the line of action. Thin the teeth, or bring pins and clocking nearer their nominal places",
         )

@@ -28,14 +28,14 @@ def set_of(scene: Scene, name: str, spec: PlanetarySpec) -> PlanetarySet:
     return own
 
 
-def _refuse_interference(scene: Scene, own: PlanetarySet) -> None:
+def _refuse_interference(scene: Scene, planetary_set: PlanetarySet) -> None:
     """Refuse gears that cannot be made, and meshes whose tips, involutes or fillets interfere."""
-    for mesh in own.meshes:
+    for mesh in planetary_set.meshes:
         central, planet = (cylindrical_gear(scene, gear.name) for gear in (mesh.central, mesh.planet))
         try:
             cylindrical_pair(central, planet, mesh.centre_distance).refuse_interference()
         except GeometryError as error:
-            raise scene.refuse(("moves", own.name, "meshes", mesh.central.name), str(error)) from None
+            raise scene.refuse(("moves", planetary_set.name, "meshes", mesh.central.name), str(error)) from None
 
 
 def _gear(scene: Scene, name: str) -> SetGear:
@@ -92,9 +92,9 @@ def _refuse_misnamed(scene: Scene, name: str, spec: PlanetarySpec, planet: Plane
             raise scene.refuse(("moves", name, "meshes"), f"expected a mesh of {gear!r}, a gear of {spec.planet!r}")
 
 
-def _refuse_unlike(scene: Scene, name: str, central: SetGear, own: SetGear) -> None:
+def _refuse_unlike(scene: Scene, name: str, central: SetGear, set_gear: SetGear) -> None:
     """Refuse a mesh of gears that do not roll on each other."""
-    if (found := unlike(scene, central.name, own.name)) is not None:
+    if (found := unlike(scene, central.name, set_gear.name)) is not None:
         words = "expected gears of the same {}, got {} and {}".format(*found)
         raise scene.refuse(("moves", name, "meshes", central.name), words)
 
@@ -111,7 +111,9 @@ def _springs(scene: Scene, spec: PlanetarySpec) -> tuple[Spring, ...]:
                 raise scene.refuse(("parts", spec.carrier, "pairs", k), words)
     set_at = None if carrier.adjustment is None else carrier.adjustment.internal * carrier.displacement
     groups = [carrier.pairs] if carrier.springs == "one" else [(pair,) for pair in carrier.pairs]
-    return tuple(Spring(tuple(one - 1 for one, _ in own), tuple(two - 1 for _, two in own), set_at) for own in groups)
+    return tuple(
+        Spring(tuple(one - 1 for one, _ in group), tuple(two - 1 for _, two in group), set_at) for group in groups
+    )
 
 
 def _refuse_no_mesh(scene: Scene, name: str, mesh: SetMesh) -> None:
@@ -137,40 +139,41 @@ def _refuse_no_mesh(scene: Scene, name: str, mesh: SetMesh) -> None:
         )
 
 
-def _refuse_roles(scene: Scene, own: PlanetarySet) -> None:
+def _refuse_roles(scene: Scene, planetary_set: PlanetarySet) -> None:
     """Refuse shafts that are none of the set's, or have two roles, and sets whose output is not driven."""
-    roles = {"held": own.held, "input": own.input, "output": own.output}
+    roles = {"held": planetary_set.held, "input": planetary_set.input, "output": planetary_set.output}
     for role, shaft in roles.items():
-        if shaft not in own.shafts:
-            words = f"expected one of {', '.join(own.shafts)}, got {shaft!r}"
-            raise scene.refuse(("moves", own.name, role), words)
+        if shaft not in planetary_set.shafts:
+            words = f"expected one of {', '.join(planetary_set.shafts)}, got {shaft!r}"
+            raise scene.refuse(("moves", planetary_set.name, role), words)
     for role, other in (("input", "held"), ("output", "held"), ("output", "input")):
         if roles[role] == roles[other]:
             words = f"expected another shaft than the one that is {other}, got {roles[role]!r} twice"
-            raise scene.refuse(("moves", own.name, role), words)
-    at_rest = own.turn(own.held)
+            raise scene.refuse(("moves", planetary_set.name, role), words)
+    at_rest = planetary_set.turn(planetary_set.held)
     for role in ("output", "input"):
-        if own.turn(roles[role]) == at_rest:
-            words = (
-                f"{roles[role]!r} does not turn while {own.held!r} is held: their teeth over their planets' are alike"
+        if planetary_set.turn(roles[role]) == at_rest:
+            words = f"{roles[role]!r} does not turn while {planetary_set.held!r} is held"
+            raise scene.refuse(
+                ("moves", planetary_set.name, role),
+                f"expected a shaft that turns: {words}: their teeth over their planets' are alike",
             )
-            raise scene.refuse(("moves", own.name, role), f"expected a shaft that turns: {words}")
 
 
-def _refuse_unbuildable(scene: Scene, own: PlanetarySet) -> None:
+def _refuse_unbuildable(scene: Scene, planetary_set: PlanetarySet) -> None:
     """Refuse planets that cannot be put in at equal angles, or touch each other."""
     try:
-        faults = own.teeth.assembly_faults(own.planets)
+        faults = planetary_set.teeth.assembly_faults(planetary_set.planets)
     except GeometryError as error:
-        raise scene.refuse(("moves", own.name, "meshes"), str(error)) from None
+        raise scene.refuse(("moves", planetary_set.name, "meshes"), str(error)) from None
     for fault in faults:
-        raise scene.refuse(("moves", own.name, "planets"), fault.words)
-    if own.planets > 1:
-        apart = 2 * own.centre_distance * math.sin(math.pi / own.planets)
-        gear = max(own.gears, key=lambda gear: gear.tip_radius)
+        raise scene.refuse(("moves", planetary_set.name, "planets"), fault.words)
+    if planetary_set.planets > 1:
+        apart = 2 * planetary_set.centre_distance * math.sin(math.pi / planetary_set.planets)
+        gear = max(planetary_set.gears, key=lambda gear: gear.tip_radius)
         if apart <= 2 * gear.tip_radius:
             raise scene.refuse(
-                ("moves", own.name, "planets"),
+                ("moves", planetary_set.name, "planets"),
                 f"neighbouring planets touch: expected pins further apart than the tip circle of {gear.name!r}, "
                 f"{2 * gear.tip_radius:.4f} mm, got {apart:.4f} mm; take fewer planets",
             )

@@ -36,34 +36,41 @@ def contact_ratios(mesh: SetMesh) -> tuple[float, float]:
     return mesh.sense * part(mesh.central), part(mesh.planet)
 
 
-def mesh_efficiencies(own: PlanetarySet, friction: float, sharing: Sharing) -> Mapping[str, float]:
+def mesh_efficiencies(planetary_set: PlanetarySet, friction: float, sharing: Sharing) -> Mapping[str, float]:
     """1 - mu pi (1/z_p + s/z) E of each mesh, by its central gear; see model.efficiency."""
     factor = sliding_factor if sharing == "formula" else shared_sliding_factor
     return {
         mesh.central.name: 1
         - friction * math.pi * (1 / mesh.planet.teeth + mesh.sense / mesh.central.teeth) * factor(*contact_ratios(mesh))
-        for mesh in own.meshes
+        for mesh in planetary_set.meshes
     }
 
 
-def set_efficiency(own: PlanetarySet, friction: float) -> Efficiencies:
+def set_efficiency(planetary_set: PlanetarySet, friction: float) -> Efficiencies:
     """Efficiencies by equilibrium of the torques; pairs of teeth in contact carry alike."""
-    drive = Drive(*(CARRIER if shaft == own.carrier else shaft for shaft in (own.input, own.output, own.held)))
-    meshes = mesh_efficiencies(own, friction, "equal shares")
-    return Efficiencies(efficiency(own.teeth, meshes, drive), efficiency(own.teeth, meshes, drive.reversed))
+    drive = Drive(
+        *(
+            CARRIER if shaft == planetary_set.carrier else shaft
+            for shaft in (planetary_set.input, planetary_set.output, planetary_set.held)
+        )
+    )
+    meshes = mesh_efficiencies(planetary_set, friction, "equal shares")
+    return Efficiencies(
+        efficiency(planetary_set.teeth, meshes, drive), efficiency(planetary_set.teeth, meshes, drive.reversed)
+    )
 
 
-def formula_efficiency(own: PlanetarySet, friction: float) -> Efficiencies | None:
+def formula_efficiency(planetary_set: PlanetarySet, friction: float) -> Efficiencies | None:
     """Efficiencies by the published closed form of a 3K set, with the published E; None for any other set."""
-    central = {mesh.central.name: mesh for mesh in own.meshes}
-    if len(central) != 3 or own.carrier in (own.held, own.input, own.output):
+    central = {mesh.central.name: mesh for mesh in planetary_set.meshes}
+    if len(central) != 3 or planetary_set.carrier in (planetary_set.held, planetary_set.input, planetary_set.output):
         return None
-    sun, ring_1, ring_2 = (central[shaft] for shaft in (own.input, own.held, own.output))
+    sun, ring_1, ring_2 = (central[shaft] for shaft in (planetary_set.input, planetary_set.held, planetary_set.output))
     if sun.central.is_ring or not (ring_1.central.is_ring and ring_2.central.is_ring) or sun.planet != ring_1.planet:
         return None
-    meshes = mesh_efficiencies(own, friction, "formula")
+    meshes = mesh_efficiencies(planetary_set, friction, "formula")
     given = MeshEfficiencies(*(meshes[mesh.central.name] for mesh in (sun, ring_1, ring_2)))
-    teeth = ToothSet(tuple(own.teeth.mesh(mesh.central.name) for mesh in (sun, ring_1, ring_2)))
+    teeth = ToothSet(tuple(planetary_set.teeth.mesh(mesh.central.name) for mesh in (sun, ring_1, ring_2)))
     return published_efficiencies(teeth, given)
 
 
@@ -72,7 +79,7 @@ STEPS: Final = 60  # of the curve, from none to the peak
 
 
 def set_sections(
-    own: PlanetarySet, friction: float | None, spring: SpringSummary | None = None
+    planetary_set: PlanetarySet, friction: float | None, spring: SpringSummary | None = None
 ) -> Mapping[str, PlanetarySetSummary]:
     """The set by its name; nothing where neither friction of the teeth nor a spring of the carrier is given.
 
@@ -82,32 +89,32 @@ def set_sections(
     """
     if friction is None and spring is None:
         return {}
-    formula = None if friction is None else formula_efficiency(own, friction)
-    meshes = {} if friction is None else mesh_efficiencies(own, friction, "equal shares")
+    formula = None if friction is None else formula_efficiency(planetary_set, friction)
+    meshes = {} if friction is None else mesh_efficiencies(planetary_set, friction, "equal shares")
     found = made(
         PlanetarySetSummary,
-        input=own.input,
-        output=own.output,
-        held=own.held,
-        ratio=float(own.ratio),
+        input=planetary_set.input,
+        output=planetary_set.output,
+        held=planetary_set.held,
+        ratio=float(planetary_set.ratio),
         friction=friction,
         meshes_percent={name: 100 * each for name, each in meshes.items()} or None,
-        efficiency=None if friction is None else _percents(set_efficiency(own, friction)),
+        efficiency=None if friction is None else _percents(set_efficiency(planetary_set, friction)),
         efficiency_by_formula=None if formula is None else _percents(formula),
         spring=spring,
     )
-    return {own.name: found}
+    return {planetary_set.name: found}
 
 
-def spring_summary(own: PlanetarySet, mean: Deviated, spring: LeafSpring) -> SpringSummary:
+def spring_summary(planetary_set: PlanetarySet, mean: Deviated, spring: LeafSpring) -> SpringSummary:
     """Torques at both shafts, and the curve of the output; of one trial with all deviations at their means."""
     torques, stiffness = dict[str, float](), dict[str, float]()
-    for shaft in (own.input, own.output):
-        torques[shaft] = min(abs(torque) for torque in breakaway(own, mean, shaft, spring))
+    for shaft in (planetary_set.input, planetary_set.output):
+        torques[shaft] = min(abs(torque) for torque in breakaway(planetary_set, mean, shaft, spring))
         per_force = torques[shaft] / (spring.force + spring.friction)  # mm/rad, of the planets' displacement
         stiffness[shaft] = spring.stiffness * per_force**2 * RAD_PER_ARCMIN
-    peak = BEYOND * crossing(displaced_ends(own, mean, own.output), spring)
-    curve = hysteresis(own, mean, own.output, spring, peak, STEPS).curve
+    peak = BEYOND * crossing(displaced_ends(planetary_set, mean, planetary_set.output), spring)
+    curve = hysteresis(planetary_set, mean, planetary_set.output, spring, peak, STEPS).curve
     return made(
         SpringSummary,
         force_n=spring.force,

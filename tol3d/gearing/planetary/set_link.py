@@ -120,7 +120,7 @@ def sets_as_links(scene: Scene) -> Brought:
     return SETS.as_links(scene, _link)
 
 
-def _link(scene: Scene, own: PlanetarySet, move: PlanetarySpec, actions: Actions) -> SetLink:
-    made = made_gears(scene, own)
-    link = SetLink.between(scene, own, actions, heights_of(own, made))
+def _link(scene: Scene, planetary_set: PlanetarySet, move: PlanetarySpec, actions: Actions) -> SetLink:
+    made = made_gears(scene, planetary_set)
+    link = SetLink.between(scene, planetary_set, actions, heights_of(planetary_set, made))
     return replace(link, made=made, friction=move.friction)

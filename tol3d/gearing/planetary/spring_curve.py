@@ -71,7 +71,7 @@ class DisplacedEnds:
         return self.low.at(displacement), self.high.at(displacement)
 
 
-def displaced_ends(own: PlanetarySet, deviated: Deviated, shaft: str, turns: float = 0.0) -> DisplacedEnds:
+def displaced_ends(planetary_set: PlanetarySet, deviated: Deviated, shaft: str, turns: float = 0.0) -> DisplacedEnds:
     """Ends of a set with one spring, by first-order gaps; the opposite shaft stands.
 
     Args:
@@ -82,11 +82,11 @@ def displaced_ends(own: PlanetarySet, deviated: Deviated, shaft: str, turns: flo
     Raises:
         InputError: no spring or several, several trials, or planets that find no room.
     """
-    if len(own.springs) != 1:
-        raise InputError(f"expected a flexible carrier with one spring, got {len(own.springs)}")
+    if len(planetary_set.springs) != 1:
+        raise InputError(f"expected a flexible carrier with one spring, got {len(planetary_set.springs)}")
     if len(deviated.pins) != 1:
         raise InputError(f"expected the deviations of one trial, got those of {len(deviated.pins)}")
-    programme = _Programme(own, shaft, *StackUp(own).sides(deviated, np.array([turns])))
+    programme = _Programme(planetary_set, shaft, *StackUp(planetary_set).sides(deviated, np.array([turns])))
     least, closed = programme.room()
     return DisplacedEnds(*(_straights(programme, end, least, closed) for end in (0, 1)))
 
@@ -213,14 +213,14 @@ def turns_under(
 
 
 def breakaway(
-    own: PlanetarySet, deviated: Deviated, shaft: str, spring: LeafSpring, turns: float = 0.0
+    planetary_set: PlanetarySet, deviated: Deviated, shaft: str, spring: LeafSpring, turns: float = 0.0
 ) -> tuple[float, float]:
     """Torques [N mm] at which the spring begins to give way: clockwise (negative) and counter-clockwise.
 
     Where all gaps are alike it is Q0 rS (1 - kappa)/(4 (1 + kappa)) at the sun of a 3K set, with the friction added to
     Q0. Infinite where contacts that stop the planets do not turn the shaft. See turns_under.
     """
-    ends = displaced_ends(own, deviated, shaft, turns)
+    ends = displaced_ends(planetary_set, deviated, shaft, turns)
     slopes = [float(side.slopes[-1]) if len(side.slopes) else 0.0 for side in (ends.low, ends.high)]
     lost = spring.force + spring.friction
     return (-lost / slopes[0] if slopes[0] > 0.0 else -np.inf), (-lost / slopes[1] if slopes[1] < 0.0 else np.inf)

@@ -248,5 +248,5 @@ def witness(system: SetTrials, made: Made, strips: Mapping[str, FlankStrips]) ->
     meshes = system.own.meshes
     chords = [strips[mesh.central.name].chord_error + strips[mesh.planet.name].chord_error for mesh in meshes]
     others = [ALLOWANCE * mesh.central.module for mesh in meshes]
-    largest = max(own.chord_error for own in strips.values())
+    largest = max(strip.chord_error for strip in strips.values())
     return PlanetaryWitness(system, turning, overcome, chord_error=largest, errors=(chords, others))

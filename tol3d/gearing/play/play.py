@@ -53,7 +53,7 @@ def free_form(stage: ParallelStage, flank: WorkingFlank, read: VariableValues) -
     free = _sum(high, _reversed(low))
     if not stage.loops:
         return free
-    loops = [form for own in stage.loops for form in _around(own, flank, read)]
+    loops = [form for loop in stage.loops for form in _around(loop, flank, read)]
     lacking = [value(form, read) for form in loops]
     tightest = np.argmin(lacking, axis=0)
     binds = np.min(lacking, axis=0) < -FREE

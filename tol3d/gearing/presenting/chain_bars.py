@@ -84,7 +84,7 @@ def _draw_published(axes: Axes, train: TrainSummary, row: ChainRow, at: Array, w
     for own, x in zip(highs, at, strict=True):
         ends = x + width * np.linspace(-0.5, 0.5, len(own) + 1)
         axes.hlines([*own.values()], ends[:-1], ends[1:], [colours[name] for name in own], linewidth=2.5, zorder=3)
-    return np.array([max(own.values(), default=0.0) for own in highs])
+    return np.array([max(high.values(), default=0.0) for high in highs])
 
 
 def draw_shares(figure: Figure, place: SubplotSpec, row: ChainRow) -> None:

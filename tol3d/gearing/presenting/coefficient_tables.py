@@ -31,10 +31,10 @@ class CoefficientRow(RowOf[Coefficient]):
     share = Computed(Shows("share [%]", ".1f"), lambda own: own.of.percent)
 
 
-def _cell(own: Slopes, before: str = "") -> str:
+def _cell(slopes: Slopes, before: str = "") -> str:
     """Slopes as a cell, with their number where they are one."""
-    one = not math.isnan(own.below + own.above) and not own.bends
-    return Shown(f"{before}{own}", (own.below + own.above) / 2) if one else f"{before}{own}"
+    one = not math.isnan(slopes.below + slopes.above) and not slopes.bends
+    return Shown(f"{before}{slopes}", (slopes.below + slopes.above) / 2) if one else f"{before}{slopes}"
 
 
 def coefficients_tables(model: Model) -> list[PageItem]:
@@ -49,7 +49,7 @@ def coefficients_tables(model: Model) -> list[PageItem]:
         if rows
         for block in titled(
             f"{', '.join(names[measure])}: change by each deviation, {_where(model, measure)}",
-            declared_table("", [(own.name, CoefficientRow(own)) for own in rows]),
+            declared_table("", [(row.name, CoefficientRow(row)) for row in rows]),
         )
     ]
     formless = [name for measure, of in names.items() if not measure.kind.adds_up for name in of]

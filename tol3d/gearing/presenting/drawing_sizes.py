@@ -45,7 +45,7 @@ class Thickness:
 
 def drawing_sizes(model: Model) -> list[PageItem]:
     """A table of what shops measure of every gear [mm]; nothing where there are no gears."""
-    return sizes_table({own.name: own.gear for own in model.gears}, _thicknesses(model))
+    return sizes_table({gear.name: gear.gear for gear in model.gears}, _thicknesses(model))
 
 
 def _thicknesses(model: Model) -> Iterator[tuple[str, Thickness]]:
@@ -86,10 +86,10 @@ def _rows(name: str, gear: Gear, stated: Sequence[Thickness]) -> Iterator[tuple[
     limits = [own.limits for own in stated]
     deviations = (0.0, sum(low for low, _ in limits), sum(high for _, high in limits))
     words = "arc s" if isinstance(gear, SpurGear | InternalGear) else "arc, mean section"
-    yield _row(name, words, [gear.section_thickness + own for own in deviations])
+    yield _row(name, words, [gear.section_thickness + deviation for deviation in deviations])
     if isinstance(gear, SpurGear | InternalGear):
         for measure in _measures(gear, [own.over for own in stated if own.over is not None]):
-            yield _row("", _words(measure, gear), [_size(measure, gear, own) for own in deviations])
+            yield _row("", _words(measure, gear), [_size(measure, gear, deviation) for deviation in deviations])
 
 
 def _measures(gear: SpurGear | InternalGear, stated: Sequence[ToothMeasure]) -> Iterable[ToothMeasure]:
@@ -118,4 +118,4 @@ def _size(measure: ToothMeasure, gear: SpurGear | InternalGear, deviation: float
 
 
 def _row(label: str, words: str, sizes: Iterable[float | None]) -> tuple[Row, SizeRow]:
-    return Row(label, (), unit="mm"), SizeRow(words, *(own if math.isfinite(own or 0.0) else None for own in sizes))
+    return Row(label, (), unit="mm"), SizeRow(words, *(size if math.isfinite(size or 0.0) else None for size in sizes))

@@ -54,7 +54,7 @@ def motion(build: SeatedBuild, name: str, frames: int | None) -> Motion:
     else:
         suits = min(FRAMES_A_TOOTH * driver.teeth, MOST_TURN_FRAMES) if train else PITCH_FRAMES
         states = tuple(_turned(shown, 2 * math.pi if train else driver.angular_pitch, frames or suits))
-    made = tuple(_frame(own, states[0], name) for own in states)
+    made = tuple(_frame(state, states[0], name) for state in states)
     left_out = [mesh.mesh.name for mesh in build.meshes if mesh not in shown.meshes]
     notes = (f"shown is {world.name}, not {', '.join(left_out)}",) if left_out else ()
     return Motion(world, made, tuple(_shots(shown, world)), COLOURS, back=name == SWING, notes=notes)

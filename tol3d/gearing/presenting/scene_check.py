@@ -245,8 +245,8 @@ MESH_COLUMNS: Final = {SpurPair: ParallelColumn, InternalPair: ParallelColumn, B
 
 def gears_table(model: Model) -> list[PageItem]:
     """The gears side by side, lengths in mm."""
-    gears = side_by_side("", [(own.name, GEAR_COLUMNS[type(own.gear)](own.gear)) for own in model.gears])
-    parts = side_by_side("", [(own.name, PartColumn(own)) for own in model.gears])
+    gears = side_by_side("", [(gear.name, GEAR_COLUMNS[type(gear.gear)](gear.gear)) for gear in model.gears])
+    parts = side_by_side("", [(gear.name, PartColumn(gear)) for gear in model.gears])
     return titled("parts", replace(gears, rows=[*gears.rows, *parts.rows]))
 
 
@@ -258,7 +258,9 @@ def housings_line(model: Model) -> Line:
 
 def meshes_table(model: Model) -> list[PageItem]:
     """The moves, with what the nominal pair gives."""
-    return titled("moves", side_by_side("", [(own.name, MESH_COLUMNS[type(own.pair)](own)) for own in model.meshes]))
+    return titled(
+        "moves", side_by_side("", [(mesh.name, MESH_COLUMNS[type(mesh.pair)](mesh)) for mesh in model.meshes])
+    )
 
 
 class MeasureRow(RowOf[Measure]):
@@ -271,7 +273,7 @@ class MeasureRow(RowOf[Measure]):
 
 def measures_table(model: Model) -> list[PageItem]:
     """The measures with limits and positions."""
-    return titled("measures", declared_table("", [(own.name, MeasureRow(own)) for own in model.measures]))
+    return titled("measures", declared_table("", [(measure.name, MeasureRow(measure)) for measure in model.measures]))
 
 
 def _what(measure: Measure) -> str:
@@ -332,8 +334,11 @@ class ContributorRow(RowOf[Contributor]):
 
 def contributors_table(model: Model) -> list[PageItem]:
     """The contributors: law and limits, and their coefficients in each measure."""
-    table = declared_table("", [(own.name, ContributorRow(own)) for own in model.contributors])
-    notes = sample_notes((own.name, own.distribution, own.per_unit, own.unit) for own in model.contributors)
+    table = declared_table("", [(contributor.name, ContributorRow(contributor)) for contributor in model.contributors])
+    notes = sample_notes(
+        (contributor.name, contributor.distribution, contributor.per_unit, contributor.unit)
+        for contributor in model.contributors
+    )
     return [*titled("contributors", table), *notes, *coefficients_tables(model)]
 
 

@@ -80,7 +80,12 @@ def link_sections(summary: RunSummary) -> list[PageItem]:
     """Further tables of a train's run, of whatever mechanism brought links into it."""
     beside = (summary.mechanism.beside or ()) if summary.mechanism else ()
     presenters = (presenter_at(summary.presenters.get(name, "")) for name in beside)
-    return [block for own in presenters if isinstance(own, ShowsLinks) for block in own.link_sections(summary)]
+    return [
+        block
+        for presenter in presenters
+        if isinstance(presenter, ShowsLinks)
+        for block in presenter.link_sections(summary)
+    ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +126,9 @@ class ShownTrain:
         def bodies(root: str) -> Iterator[Body]:
             return (body for name, own in inside.items() if self._root_of(self._links[name]) == root for body in own)
 
-        return tuple(replace(own, bodies=(*own.bodies, *bodies(own.name)), one_file=True) for own in self.gears.worlds)
+        return tuple(
+            replace(world, bodies=(*world.bodies, *bodies(world.name)), one_file=True) for world in self.gears.worlds
+        )
 
     @cached_property
     def _links(self) -> dict[str, StatedLink]:
@@ -175,8 +182,8 @@ class ShownTrain:
         return View(world=self._seen[0]) if close_up is None else self.gears.view(close_up)
 
 
-def _in_pictures(own: ShownLink) -> tuple[Body, ...]:
-    return own.bodies if own.seen is None else own.seen
+def _in_pictures(link: ShownLink) -> tuple[Body, ...]:
+    return link.bodies if link.seen is None else link.seen
 
 
 def shown_build(build: SeatedBuild) -> GearDisplay | ShownTrain:

@@ -105,14 +105,14 @@ def sums_table(train: TrainSummary, summary: RunSummary) -> Table:
     columns = {name: Range.of(ends) for name, ends in ends_by_column(train).items()}
     columns = {name: columns[name] for name in (*METHOD_WORDS, *columns) if name in columns}
     rows = [
-        Row(f"sum of the stages' {word}", [_angle(own.by_word[word]) for own in columns.values()], unit="arcmin")
+        Row(f"sum of the stages' {word}", [_angle(column.by_word[word]) for column in columns.values()], unit="arcmin")
         for word in Range(None, None, None).by_word
     ]
     highs = [distributions[name].high if name in METHOD_WORDS and name in distributions else None for name in columns]
     rows.append(Row("mean + 3 sigma of the sum", [_angle(high) for high in highs], unit="arcmin"))
     lever = train.lever_mm
     if lever is not None:
-        worst = [tip_mm(own.high, lever) for own in columns.values()]
+        worst = [tip_mm(column.high, lever) for column in columns.values()]
         rows.append(Row(f"{train.point}, sum of highs [mm]", [value_cell(value, "mm") for value in worst], unit="mm"))
         tips = [value_cell(tip_mm(high, lever), "mm") for high in highs]
         rows.append(Row(f"{train.point}, mean + 3 sigma [mm]", tips, unit="mm"))

@@ -103,7 +103,7 @@ class ReducerKind:
             draw = self.draw_of(scene, own, acts, spec)
             contributors[name] = acting_in(scene, name, own.name, draw, acts.turning, acts.least)
         links = [link_of(scene, own, moves[name], tuple(actions[name])) for name, own in reducers.items()]
-        warnings = [line for own in reducers.values() for line in self.implausible(scene, own)]
+        warnings = [line for reducer in reducers.values() for line in self.implausible(scene, reducer)]
         brought = (BroughtLink(link, parts[link.name], (link.own.input, link.own.output)) for link in links)
         return Brought(tuple(brought), contributors, tuple(warnings))
 

@@ -121,7 +121,7 @@ class ReducerLink(StatedLink):
 
     def deviated(self, seen: LinkTrials, turns: Array) -> Any:
         """Deviations of its parts at turns of the output (trials,), by its own contributors and by bores."""
-        drawn = ((each.name, seen.deviations[each.name]) for each in seen.contributors)
+        drawn = ((contributor.name, seen.deviations[contributor.name]) for contributor in seen.contributors)
         found = self.alone.made_of.drawn(self.own, self.acts, drawn, len(seen))
         asides, none = self.asides(seen), np.zeros((len(seen), 2))
         for part, acts, components in self._movable(turns) if asides else ():

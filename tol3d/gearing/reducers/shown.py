@@ -105,9 +105,9 @@ def gear_sizes(
 ) -> Sequence[PageItem]:
     """Sizes of teeth that shops measure, of gears by their names, with the tolerances of their thickness."""
     stated = (
-        (act.gear, Thickness(each.draw.distribution, act.factor, act.over))
-        for each in contributors
-        if (act := acts.get(each.name)) is not None and act.effect.endswith("thickness")
+        (act.gear, Thickness(contributor.draw.distribution, act.factor, act.over))
+        for contributor in contributors
+        if (act := acts.get(contributor.name)) is not None and act.effect.endswith("thickness")
     )
     return sizes_table(gears, stated)
 

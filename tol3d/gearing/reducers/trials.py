@@ -228,5 +228,5 @@ class Witnesses:
 
     def bounds(self: Any, measure: Measure) -> tuple[float, float]:
         """See WitnessMethod."""
-        chords, others = (self.system.gap_bound(measure, each) for each in self.errors)
+        chords, others = (self.system.gap_bound(measure, error) for error in self.errors)
         return chords, others

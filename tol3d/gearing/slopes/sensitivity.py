@@ -23,7 +23,7 @@ from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.play.linked import link_trials
 from tol3d.gearing.play.play import Variable, seat_key
 from tol3d.gears import Flank
-from tol3d.gears.toothed_gear import opposite
+from tol3d.gears.flank import opposite
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.taken import ROWS_AT_ONCE

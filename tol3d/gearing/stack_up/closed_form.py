@@ -157,7 +157,9 @@ def _link_sums(model: Model, measure: Measure) -> _Sums | None:
     """None where one of them has none."""
     found = []
     for factor, name in measure.kind.links:
-        own = model.link(name).sum_of([each for each in model.contributors if each.effect.acts_on(name)])
+        own = model.link(name).sum_of(
+            [contributor for contributor in model.contributors if contributor.effect.acts_on(name)]
+        )
         if own is None:
             return None
         found.append((_lever(measure) * factor, own))

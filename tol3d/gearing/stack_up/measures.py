@@ -230,8 +230,8 @@ def _waves(model: Model, backlash: Backlash, driver: Array) -> Iterator[tuple[ra
     stack = stack_of(model, mesh, backlash.reading)
     side = mesh.pair.mating_flank(mesh.resting_flank(backlash.reading.flank))
     per = per_normal_backlash(model, backlash)
-    for own in stack.contributions:
-        for term, share in ((own.aside, 1.0), (own.opening, -side / 2)):
+    for contribution in stack.contributions:
+        for term, share in ((contribution.aside, 1.0), (contribution.opening, -side / 2)):
             if term is not None and term.turns is not None:
                 columns = model.component_slices[term.contributor.name]
                 yield range(columns.start, columns.stop), share * per * _wave(term, stack, driver)

@@ -75,7 +75,7 @@ def taken(
     rows: tuple[Integers, Array, Array, Array, Array],
 ) -> Array:
     """Loss of a flank side by its flanks [mm], (rows,); see `take` for driver, driven and line, and for all others."""
-    first, angles, lean, apart, shifts = (np.require(each, requirements=["C", "W"]) for each in rows)
+    first, angles, lean, apart, shifts = (np.require(row, requirements=["C", "W"]) for row in rows)
     found = np.empty(len(angles))
     driver, driven, line = GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), LineOfContact(*mesh[2])
     take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, found)

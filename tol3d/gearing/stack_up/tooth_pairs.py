@@ -24,8 +24,8 @@ from tol3d.gearing.model import Contributor, Mesh, Model, Reading
 from tol3d.gearing.model.flank_margin import margin_of
 from tol3d.gearing.stack_up.term import Role
 from tol3d.gears import SpurGear, SpurPair
+from tol3d.gears.flank import RIGHT
 from tol3d.gears.pair import CONTACT_MARGIN
-from tol3d.gears.toothed_gear import RIGHT
 from tol3d.numerics.arrays import Array
 
 Integers = NDArray[np.int64]
@@ -77,8 +77,8 @@ class ToothFlanks:
                 slot = SHAPES * (2 * place.tooth + (place.flank != RIGHT)) + shape
                 before[slot] = before.get(slot, -1) + 1
                 summands.setdefault(before[slot], []).append((columns.start + component, slot, factor))
-            for own in summands.values():
-                each = np.array(own)
+            for summand in summands.values():
+                each = np.array(summand)
                 found.append((each[:, 0].astype(np.int64), each[:, 1].astype(np.int64), each[:, 2]))
         return found
 
@@ -222,7 +222,7 @@ def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None
 def teeth_deviate(model: Model, mesh: Mesh) -> bool:
     """True if single flanks of a mesh's gears deviate."""
     gears = (mesh.driver, mesh.driven)
-    return any(own.effect.deviates_teeth(gear) for own in model.contributors for gear in gears)
+    return any(contributor.effect.deviates_teeth(gear) for contributor in model.contributors for gear in gears)
 
 
 def pieces(trials: int, positions: int, components: int) -> Iterator[slice]:

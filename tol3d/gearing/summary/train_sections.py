@@ -258,8 +258,10 @@ def _ends_of_meshes(model: Model, kind: LostMotion, figures: PublishedColumn, sa
     return known if len(known) == len(ends) else {}
 
 
-def _stated_ends(own: PublishedEnds) -> Ends:
-    return Ends(**{key: value for key in Ends.model_fields if (value := _arcmin(getattr(own, key))) is not None})
+def _stated_ends(published_ends: PublishedEnds) -> Ends:
+    return Ends(
+        **{key: value for key in Ends.model_fields if (value := _arcmin(getattr(published_ends, key))) is not None}
+    )
 
 
 def _arcmin(value: Quantity | float | None) -> float | None:

@@ -85,8 +85,12 @@ class Clusters:
     @cached_property
     def pairs(self) -> tuple[Places, Places]:
         """Both features (pairs,) of all pairs within clusters, each in both orders."""
-        firsts = [np.broadcast_to(own.columns[:, :, None], own.pairs.shape).ravel() for own in self.patterns]
-        seconds = [np.broadcast_to(own.columns[:, None, :], own.pairs.shape).ravel() for own in self.patterns]
+        firsts = [
+            np.broadcast_to(pattern.columns[:, :, None], pattern.pairs.shape).ravel() for pattern in self.patterns
+        ]
+        seconds = [
+            np.broadcast_to(pattern.columns[:, None, :], pattern.pairs.shape).ravel() for pattern in self.patterns
+        ]
         none: Places = np.zeros(0, dtype=np.intp)
         return np.concatenate([none, *firsts]), np.concatenate([none, *seconds])
 

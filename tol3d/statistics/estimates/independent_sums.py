@@ -88,10 +88,10 @@ class IndependentSums:
         )
 
     @classmethod
-    def _none(cls, own: Clusters) -> Self:
+    def _none(cls, clusters: Clusters) -> Self:
         """Sums over no trial."""
-        size = own.features
-        return cls(own, 0, np.zeros(size + 1), np.zeros(len(own.pairs[0])), np.zeros(size), 0.0)
+        size = clusters.features
+        return cls(clusters, 0, np.zeros(size + 1), np.zeros(len(clusters.pairs[0])), np.zeros(size), 0.0)
 
     def merge(self, other: Self) -> Self:
         """The sums of both blocks together; Pebay, SAND2008-6212, 2008 (covariances)."""
@@ -195,7 +195,7 @@ def independent_shares(sums: IndependentSums) -> tuple[Array, Array, float]:
     """
     parts = len(sums.clusters.sizes)
     share, error = np.zeros(parts), np.zeros(parts)
-    widest = max((own.columns.shape[1] for own in sums.clusters.patterns), default=0)
+    widest = max((pattern.columns.shape[1] for pattern in sums.clusters.patterns), default=0)
     if sums.count <= widest + 1:
         return np.full(parts, np.nan), np.full(parts, np.nan), math.nan
     if sums.is_constant:

@@ -96,7 +96,7 @@ class LinearFit:
         covariance[np.ix_(used, used)] = inverse * left / freedom
         spread = sums.comoments[:-1, :-1] / sums.count
         fits = []
-        for size in dict.fromkeys(own.stop - own.start for own in parts):
+        for size in dict.fromkeys(part.stop - part.start for part in parts):
             which = np.array([k for k, own in enumerate(parts) if own.stop - own.start == size], dtype=np.intp)
             columns = np.array([parts[k].start for k in which], dtype=np.intp)[:, None] + np.arange(size)
             block = columns[:, :, None], columns[:, None, :]
@@ -106,7 +106,7 @@ class LinearFit:
     @classmethod
     def _of_clusters(cls, sums: IndependentSums) -> Self | None:
         """Each cluster by itself; the effects of others are in the errors of its coefficients."""
-        widest = max((own.columns.shape[1] for own in sums.clusters.patterns), default=0)
+        widest = max((pattern.columns.shape[1] for pattern in sums.clusters.patterns), default=0)
         if sums.count - widest - 1 < LEAST_FREEDOM:
             return None
         found = list(sums.fits())
@@ -118,31 +118,31 @@ class LinearFit:
     @property
     def parts(self) -> int:
         """Number of parts."""
-        return sum(len(own.parts) for own in self.fits)
+        return sum(len(fit.parts) for fit in self.fits)
 
     @property
     def effects(self) -> Array:
         """See PartFit, (parts,)."""
-        return self._of_each([own.effects for own in self.fits])
+        return self._of_each([fit.effects for fit in self.fits])
 
     @property
     def chances(self) -> Array:
         """See PartFit, (parts,)."""
-        return self._of_each([own.chances for own in self.fits])
+        return self._of_each([fit.chances for fit in self.fits])
 
     @property
     def spreads(self) -> Array:
         """See PartFit, (parts,)."""
-        return self._of_each([own.spreads for own in self.fits])
+        return self._of_each([fit.spreads for fit in self.fits])
 
     @property
     def standard_errors(self) -> Array:
         """See PartFit, (parts,)."""
-        return self._of_each([own.standard_errors for own in self.fits])
+        return self._of_each([fit.standard_errors for fit in self.fits])
 
     def reaches(self, features: Array) -> Array:
         """Size of one row (features,) of the features in each part, in units of `spreads`; 0 without any."""
-        sizes = self._of_each([np.hypot.reduce(features[own.columns], axis=1) for own in self.fits])
+        sizes = self._of_each([np.hypot.reduce(features[fit.columns], axis=1) for fit in self.fits])
         spreads = self.spreads
         return np.divide(sizes, spreads, out=np.zeros(len(sizes)), where=spreads > 0.0)
 

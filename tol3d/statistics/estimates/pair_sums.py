@@ -77,10 +77,12 @@ class PairSums:
         return cls._of_whole(np.stack(columns), between_groups)
 
     @classmethod
-    def _of_sums(cls, own: TargetSums) -> Self:
-        size, squares = len(own.means), np.diagonal(own.comoments)
-        counts = np.full((size, size), own.count, dtype=np.int64)
-        return cls(counts, np.tile(own.means[:, None], size), np.tile(squares[:, None], size), own.comoments)
+    def _of_sums(cls, target_sums: TargetSums) -> Self:
+        size, squares = len(target_sums.means), np.diagonal(target_sums.comoments)
+        counts = np.full((size, size), target_sums.count, dtype=np.int64)
+        return cls(
+            counts, np.tile(target_sums.means[:, None], size), np.tile(squares[:, None], size), target_sums.comoments
+        )
 
     @classmethod
     def _of_whole(cls, rows: Array, products: Products) -> Self:

@@ -265,14 +265,14 @@ def _divided(
     sums: RegressorSums, sigma: Array, groups: Mapping[str, slice], share: Mapping[str, float]
 ) -> Mapping[str, float]:
     """Shares of groups that are correlated with each other, as many as they have together."""
-    columns = [column for own in groups.values() for column in range(len(sums.means) - 1)[own] if sigma[column] > 0]
+    columns = [column for group in groups.values() for column in range(len(sums.means) - 1)[group] if sigma[column] > 0]
     if len(groups) < 2 or not columns:
         return {}
     whole = [column for column in range(len(sums.means) - 1) if sigma[column] > 0]
     correlation = _correlations(sums, sigma, [*whole, -1])
     slopes = factorised(correlation[:-1, :-1]).inverse @ correlation[:-1, -1]
     places = [whole.index(column) for column in columns]
-    ends = np.cumsum([0, *(sum(sigma[range(len(sigma) - 1)[own]] > 0) for own in groups.values())]).tolist()
+    ends = np.cumsum([0, *(sum(sigma[range(len(sigma) - 1)[group]] > 0) for group in groups.values())]).tolist()
     parts = [slice(start, end) for start, end in pairwise(ends)]
     effects = grouped_shapley(slopes[places], correlation[np.ix_(places, places)], parts)
     total, all_effects = sum(share[name] for name in groups), float(effects.sum())

@@ -83,7 +83,7 @@ def by_regression(simulation: Simulation, measure: Measure, sums: Sums | None) -
             for name, own, its in zip(groups, share.tolist(), error.tolist(), strict=True)
         }
         return Attribution(percents, "regression", finite(1.0 - unexplained))
-    found = shares(sums, groups, [own.names for own in simulation.copula.blocks])
+    found = shares(sums, groups, [block.names for block in simulation.copula.blocks])
     percents = {name: (finite(100 * found.share[name]), finite(100 * found.standard_error[name])) for name in groups}
     return Attribution(percents, "regression", finite(found.determined))
 
@@ -158,7 +158,11 @@ class Attributed:
         """
         system = self.simulation.system
         acts = {own.name: [each.name for each in acting(self.simulation, own)] for own in measures}
-        names = [own.name for own in system.contributors if any(own.name in each for each in acts.values())]
+        names = [
+            contributor.name
+            for contributor in system.contributors
+            if any(contributor.name in act for act in acts.values())
+        ]
         room = min(max(int(MOST_OF_RUN * self.trials), at_least) // (len(names) + 1), MOST_PAIRS)
         if self.simulation.copula.blocks or room < FEWEST_PAIRS:
             return {}
@@ -197,7 +201,7 @@ class _Pairs:
     @cached_property
     def _read(self) -> Collection[str]:
         """Contributors whose draws others read."""
-        return {name for own in self.simulation.system.contributors for name in reads_of(own)}
+        return {name for contributor in self.simulation.system.contributors for name in reads_of(contributor)}
 
     @cached_property
     def _columns(self) -> Mapping[str, slice]:
@@ -205,7 +209,7 @@ class _Pairs:
 
     def exchanged(self, name: str) -> Trials:
         """The plain builds with other draws of a contributor, and what follows from them."""
-        own = next(each for each in self.simulation.system.contributors if each.name == name)
+        own = next(contributor for contributor in self.simulation.system.contributors if contributor.name == name)
         if name in self._read or reads_of(own):
             return redrawn(self.simulation, self.count, (name,))
         rows = self.plain.deviations.copy()

@@ -41,7 +41,10 @@ def findings(simulation: Simulation, method: Method | None, tally: Tally, activi
 def described(simulation: Simulation, tally: Tally, found: Findings) -> dict[str, Any]:
     """Findings with what their system adds: descriptions of measures, and sections of its own after the measures."""
     system, options = simulation.system, simulation.study.options
-    measures = {own.name: {**system.describe(own), **dict(found.measures[own.name].items())} for own in system.measures}
+    measures = {
+        measure.name: {**system.describe(measure), **dict(found.measures[measure.name].items())}
+        for measure in system.measures
+    }
     whole = dict(found.items()) | {"measures": measures}
     whole |= {key: {**dict(whole[key].items()), **options} for key in ("study", "witness") if key in whole}
     behind = [*whole].index("measures") + 1

@@ -52,7 +52,7 @@ def study_summary(simulation: Simulation, method: Method | None, tally: Tally) -
     single = [measure for measure in system.measures if measure.take != "curve"]
     differences, of_trials = Differences.of(simulation, method, tally), contacts_of_trials(simulation, tally.trials)
     wanted: dict[Use, float] = {
-        "high-low-mean": sum(own.contacts for own in extents(system, single)),
+        "high-low-mean": sum(extent.contacts for extent in extents(system, single)),
         **differences.wanted,
     }
     contacts = shared(of_trials, wanted)
@@ -219,11 +219,11 @@ def _not_attributed(
     if not simulation.has_geometry:
         return
     lacking = [
-        own
-        for own in simulation.system.measures
-        if (found := attributed.get(own.name, {}).get(ANALYTIC)) is not None and found.lacks
+        measure
+        for measure in simulation.system.measures
+        if (found := attributed.get(measure.name, {}).get(ANALYTIC)) is not None and found.lacks
     ]
-    if any(own.exact is None for own in extents(simulation.system, lacking, of_other_method(simulation, trials))):
+    if any(extent.exact is None for extent in extents(simulation.system, lacking, of_other_method(simulation, trials))):
         yield (
             f"{_named([own.name for own in lacking])}: shares of the analytic method are of what little a regression "
             "explains, for high–low–mean by it was not looked at; more trials let more builds follow them"
@@ -232,7 +232,9 @@ def _not_attributed(
 
 def _unphysical_draws(simulation: Simulation, tally: Tally) -> Iterator[str]:
     judged = {
-        own.name for own in simulation.system.contributors if isinstance(own.draw, JudgedDraw | DependentlyJudged)
+        contributor.name
+        for contributor in simulation.system.contributors
+        if isinstance(contributor.draw, JudgedDraw | DependentlyJudged)
     }
     for name, count in tally.unphysical.items():
         if count:
@@ -341,13 +343,17 @@ def _attributed(
 
 
 def _shares(
-    simulation: Simulation, measure: Measure, own: MeasureTally, alone: Percents, found: Mapping[str, Attribution]
+    simulation: Simulation,
+    measure: Measure,
+    measure_tally: MeasureTally,
+    alone: Percents,
+    found: Mapping[str, Attribution],
 ) -> list[ContributorShare]:
     form = closed_form_of(simulation, measure)
     percents = {method: each.percents for method, each in found.items()}
     known = percents.get(GEOMETRIC, {})
     # the error of a share by regression is worked out for independent trials
-    with_errors = own.analytic.replicated is None or found[GEOMETRIC].by != "regression" if known else False
+    with_errors = measure_tally.analytic.replicated is None or found[GEOMETRIC].by != "regression" if known else False
     return [
         made(
             ContributorShare,

@@ -48,8 +48,8 @@ class Block:
 
     def uniforms(self, uniforms: Sequence[Array]) -> list[Array]:
         """Correlated uniforms (n,) of each name, of independent ones; the first is as it was."""
-        normals = self.mixed([ndtri(np.clip(own, LEAST, MOST)) for own in uniforms])
-        return [uniforms[0], *(np.clip(ndtr(own), LEAST, MOST) for own in normals[1:])]
+        normals = self.mixed([ndtri(np.clip(uniform, LEAST, MOST)) for uniform in uniforms])
+        return [uniforms[0], *(np.clip(ndtr(normal), LEAST, MOST) for normal in normals[1:])]
 
 
 @dataclass(frozen=True)
@@ -65,14 +65,14 @@ class Copula:
     def uniforms(self, independent: Mapping[str, Array]) -> Mapping[str, Array]:
         """Correlated uniforms by name, of the independent ones of all that are in blocks."""
         found: dict[str, Array] = {}
-        for own in self.blocks:
-            found |= dict(zip(own.names, own.uniforms([independent[name] for name in own.names]), strict=True))
+        for block in self.blocks:
+            found |= dict(zip(block.names, block.uniforms([independent[name] for name in block.names]), strict=True))
         return found
 
     @cached_property
     def names(self) -> frozenset[str]:
         """All contributors that are correlated."""
-        return frozenset(name for own in self.blocks for name in own.names)
+        return frozenset(name for block in self.blocks for name in block.names)
 
 
 INDEPENDENT = Copula()

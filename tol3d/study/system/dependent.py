@@ -91,9 +91,9 @@ def in_draw_order(contributors: Sequence[Own]) -> tuple[Own, ...]:
     Raises:
         UnfitError: one reads an unknown contributor, or contributors read each other in a ring.
     """
-    if not any(reads_of(own) for own in contributors):
+    if not any(reads_of(contributor) for contributor in contributors):
         return tuple(contributors)
-    waiting = {own.name: own for own in contributors}
+    waiting = {contributor.name: contributor for contributor in contributors}
     for own in contributors:
         if unknown := [name for name in reads_of(own) if name not in waiting]:
             raise UnfitError(f"contributor {own.name!r} reads {unknown[0]!r}, which is no contributor")

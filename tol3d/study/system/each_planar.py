@@ -47,7 +47,7 @@ class EachOwn:
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
         """See Draw."""
         parts = parts_of(uniforms, self.each.uniforms)
-        return tuple(own for part in parts for own in self.each.deviations(*part))
+        return tuple(deviation for part in parts for deviation in self.each.deviations(*part))
 
     def mean(self, *, turning: bool) -> tuple[float, ...]:
         """See Draw."""

@@ -98,7 +98,7 @@ def require_whole(system: Any) -> None:
 
 def _require(found: object, protocol: type) -> None:
     bases = [own for own in protocol.__mro__ if getattr(own, "_is_protocol", False) and own is not Protocol]
-    names = dict.fromkeys(name for own in bases for name in vars(own) if not name.startswith("_"))
+    names = dict.fromkeys(name for basis in bases for name in vars(basis) if not name.startswith("_"))
     lacking = [name for name in names if not hasattr(found, name)]
     if lacking:
         wanted, got = f"{protocol.__module__}.{protocol.__name__}", type(found).__name__

@@ -108,7 +108,7 @@ def requires_of(scene: Scene) -> tuple[str, ...]:
     hosts = {own.name, *own.includes}
     used = (each for each in scene.grammar.vocabularies_of(scene) if hosts & set(each.extends))
     others = (*used, *scene.grammar.lawgivers_of(scene))
-    extending = (each.requires for each in others if isinstance(each, Mechanism))
+    extending = (other.requires for other in others if isinstance(other, Mechanism))
     entries = (entry.requires for entry in scene.entries().values())
     return tuple(dict.fromkeys(name for names in (own.requires, *extending, *entries) for name in names))
 
@@ -182,8 +182,8 @@ def starter_lines(mechanisms: Iterable[Mechanism]) -> Iterator[str]:
     """A line for each starter: the word to ask for it by, and its subject; then the mechanisms without any."""
     every = tuple(mechanisms)
     starters = [one for own in every for one in starters_of(own)]
-    width = max((len(one.name) for one in starters), default=0)
-    yield from (f"{one.name:<{width}}  {one.title}" for one in starters)
+    width = max((len(starter.name) for starter in starters), default=0)
+    yield from (f"{starter.name:<{width}}  {starter.title}" for starter in starters)
     if bare := [own.name for own in every if not own.starters]:
         yield f"without a starter scene: {', '.join(bare)}"
 

@@ -40,10 +40,10 @@ def joined_answers(pieces: Sequence[Answers]) -> Answers:
         return pieces[0]
     first = pieces[0]
     return Answers(
-        {name: np.concatenate([own.values[name] for own in pieces]) for name in first.values},
-        {key: np.concatenate([own.terms[key] for own in pieces]) for key in first.terms},
-        {name: np.concatenate([own.details[name] for own in pieces]) for name in first.details},
-        {name: np.concatenate([own.status[name] for own in pieces]) for name in first.status},
+        {name: np.concatenate([piece.values[name] for piece in pieces]) for name in first.values},
+        {key: np.concatenate([piece.terms[key] for piece in pieces]) for key in first.terms},
+        {name: np.concatenate([piece.details[name] for piece in pieces]) for name in first.details},
+        {name: np.concatenate([piece.status[name] for piece in pieces]) for name in first.status},
     )
 
 

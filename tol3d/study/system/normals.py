@@ -64,7 +64,7 @@ def scalars(count: int, first: int = 0) -> tuple[Group, ...]:
 
 def shifted(groups: Sequence[Group], first: int) -> tuple[Group, ...]:
     """The same of uniforms that stand behind others."""
-    return tuple(Group(own.kind, tuple(first + place for place in own.places)) for own in groups)
+    return tuple(Group(group.kind, tuple(first + place for place in group.places)) for group in groups)
 
 
 def groups_of(draw: Drawn) -> tuple[Group, ...] | None:
@@ -76,7 +76,7 @@ def groups_of(draw: Drawn) -> tuple[Group, ...] | None:
 def normal_count(draw: Drawn) -> int:
     """Number of standard normals for a draw; that of its uniforms if it does not state their groups."""
     groups = groups_of(draw)
-    return draw.uniforms if groups is None else sum(NORMALS[own.kind] for own in groups)
+    return draw.uniforms if groups is None else sum(NORMALS[group.kind] for group in groups)
 
 
 def uniforms_of(draw: Drawn, normals: Sequence[Array]) -> list[Array]:
@@ -84,9 +84,9 @@ def uniforms_of(draw: Drawn, normals: Sequence[Array]) -> list[Array]:
     groups = groups_of(draw) or scalars(draw.uniforms)
     found: list[Array] = [np.zeros(0)] * draw.uniforms
     first = 0
-    for own in groups:
-        count = NORMALS[own.kind]
-        for place, uniform in zip(own.places, _uniforms(own.kind, normals[first : first + count]), strict=True):
+    for group in groups:
+        count = NORMALS[group.kind]
+        for place, uniform in zip(group.places, _uniforms(group.kind, normals[first : first + count]), strict=True):
             found[place] = np.clip(uniform, LEAST, MOST)
         first += count
     return found

@@ -64,14 +64,16 @@ class OutputSystem(PlainSystem):
 
     def trials_again(self, columns: Columns) -> Trials:
         """Trials from columns of their results."""
-        deviations = np.concatenate([component_values(own, columns) for own in self.contributors], axis=1)
+        deviations = np.concatenate(
+            [component_values(contributor, columns) for contributor in self.contributors], axis=1
+        )
         turns = np.asarray(columns[self.position_column], dtype=np.float64) / 360.0
         return Trials(deviations, {self.own.name: turns})
 
     @cached_property
     def read(self) -> Mapping[str, Any]:
         """The system's own measures by their names."""
-        return {own.name: own for own in self.measures}
+        return {measure.name: measure for measure in self.measures}
 
     def regressor_key(self, measure: Measure) -> Hashable:
         """Key of the measure's own: contributors are regressed by their effect on it."""
@@ -93,8 +95,8 @@ class OutputSystem(PlainSystem):
         """
         trials, slices = self.trials_again(columns), component_slices(self)
         at_once = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
-        for own in contributors:
-            rows[own.name][...] = 0.0
+        for contributor in contributors:
+            rows[contributor.name][...] = 0.0
         for first in range(0, len(trials), at_once):
             piece = trials.part(first, first + at_once)
             part_of = parts(piece)

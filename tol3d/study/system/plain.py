@@ -285,15 +285,19 @@ class PlainSystem:
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
         """Each component of a contributor; of a large group its first-order term."""
-        for own in contributors:
-            values = [np.asarray(columns[name], dtype=np.float64) * own.per_unit for name in own.columns]
-            if is_group(own):
-                slopes = self._slopes(measure, own)
-                off = (slope * (value - own.distribution.mean) for slope, value in zip(slopes, values, strict=True))
-                sigma = own.draw.sigma * float(np.sqrt((slopes * slopes).sum()))
-                regress_term(rows[own.name], sum(off, np.zeros(1)), sigma)
+        for contributor in contributors:
+            values = [
+                np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns
+            ]
+            if is_group(contributor):
+                slopes = self._slopes(measure, contributor)
+                off = (
+                    slope * (value - contributor.distribution.mean) for slope, value in zip(slopes, values, strict=True)
+                )
+                sigma = contributor.draw.sigma * float(np.sqrt((slopes * slopes).sum()))
+                regress_term(rows[contributor.name], sum(off, np.zeros(1)), sigma)
             else:
-                regress_plainly(rows[own.name], own, values)
+                regress_plainly(rows[contributor.name], contributor, values)
 
     def _slopes(self, measure: Measure, contributor: Contributor) -> Array:
         """Change of a measure by each component of a contributor, over two sigma about the means, by theory."""

@@ -159,7 +159,7 @@ class Asked(Region):
 
     def furthest(self, slopes: Array) -> Array:
         """See Region."""
-        return np.array([self._furthest(own) for own in slopes]).reshape(slopes.shape)
+        return np.array([self._furthest(slope) for slope in slopes]).reshape(slopes.shape)
 
     def _furthest(self, slopes: Array) -> Array:
         ends = self.draw.ends(lambda rows: np.asarray(rows @ slopes), turning=self.turning)

@@ -14,7 +14,7 @@ VALUES_AT_ONCE = 2**22  # the same where positions are read in turn and only the
 
 def trials_at_once(measures: Iterable[Measure]) -> int:
     """Number of trials asked of a method at once, as the positions of the measures let it."""
-    return max(1, min(_rows(own.positions) // own.positions.in_a_trial for own in measures))
+    return max(1, min(_rows(measure.positions) // measure.positions.in_a_trial for measure in measures))
 
 
 def _rows(positions: Positions) -> int:

@@ -105,9 +105,9 @@ def magnified(system: Toleranced, trials: Trials, factor: float) -> Trials:
     """Trials with scaled deviations; shares of a room, which have no unit, stay as they are."""
     factors = np.full(component_count(system), factor)
     slices = component_slices(system)
-    for own in system.contributors:
-        if own.unit == NO_UNIT:
-            factors[slices[own.name]] = 1.0
+    for contributor in system.contributors:
+        if contributor.unit == NO_UNIT:
+            factors[slices[contributor.name]] = 1.0
     return trials.scaled(factors)
 
 

@@ -74,16 +74,16 @@ def spectrum_sample(measure: Measure, tallies: tuple[OrderTally, ...]) -> Spectr
     """Spectrum in the form of summary.json, in the measure's unit; None if the measure asks for none."""
     if measure.spectrum is None:
         return None
-    low, middle, high = ([own.quantile(p) for own in tallies] for p in QUANTILES)
+    low, middle, high = ([tally.quantile(p) for tally in tallies] for p in QUANTILES)
     return made(
         SpectrumSample,
         order=[float(order) for order in measure.spectrum.orders],
-        mean=[own.moments.mean if own.moments.count else None for own in tallies],
-        sigma=[finite(own.moments.sigma) for own in tallies],
+        mean=[tally.moments.mean if tally.moments.count else None for tally in tallies],
+        sigma=[finite(tally.moments.sigma) for tally in tallies],
         p0_135=low,
         p50=middle,
         p99_865=high,
-        max=[finite(own.moments.maximum) for own in tallies],
+        max=[finite(tally.moments.maximum) for tally in tallies],
     )
 
 
@@ -113,14 +113,14 @@ def reason_counts(columns: Columns, measure: Measure) -> dict[str, int]:
     return dict(zip(words.tolist(), counts.tolist(), strict=True))
 
 
-def gathered(mine: Counts, its: Counts) -> dict[str, int]:
+def gathered(mine: Counts, counts: Counts) -> dict[str, int]:
     """Both counts as one, of any names."""
-    return {name: mine.get(name, 0) + its.get(name, 0) for name in sorted(mine.keys() | its.keys())}
+    return {name: mine.get(name, 0) + counts.get(name, 0) for name in sorted(mine.keys() | counts.keys())}
 
 
-def added(mine: Counts, its: Counts) -> dict[str, int]:
+def added(mine: Counts, counts: Counts) -> dict[str, int]:
     """Both counts as one."""
-    return {name: count + its[name] for name, count in mine.items()}
+    return {name: count + counts[name] for name, count in mine.items()}
 
 
 LOWEST: Final = "lowest"
@@ -204,7 +204,7 @@ class CurveTally:
                 }
                 for method in curves
             },
-            min(own.deepest for own in curves.values()),
+            min(curve.deepest for curve in curves.values()),
             {method: spectrum_tally(measure, own.values, grids) for method, own in curves.items()},
         )
 

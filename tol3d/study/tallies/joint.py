@@ -165,10 +165,10 @@ def _most_correlated(tally: JointTally) -> list[int]:
     return sorted([*found][:MOST_IN_SUMMARY])
 
 
-def _ranked_pairs(own: PairSums) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _ranked_pairs(pair_sums: PairSums) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Both columns of each pair, the largest |r| first, pairs without one last."""
-    first, second = np.triu_indices(len(own.means), 1)
-    size = np.nan_to_num(np.abs(own.correlations[first, second]), nan=-1.0)
+    first, second = np.triu_indices(len(pair_sums.means), 1)
+    size = np.nan_to_num(np.abs(pair_sums.correlations[first, second]), nan=-1.0)
     order = np.argsort(-size, kind="stable")
     return first[order], second[order]
 
@@ -193,17 +193,25 @@ def correlation_rows(simulation: Simulation, tally: JointTally) -> Iterator[list
     yield from map(list, zip(*columns.values(), strict=True))
 
 
-def _yield(own: Proportion, replicates: Mapping[int, Proportion]) -> summary.JointYield:
-    interval = interval_of_replicates([*replicates.values()]) if replicates else own.interval_ppm()
+def _yield(proportion: Proportion, replicates: Mapping[int, Proportion]) -> summary.JointYield:
+    interval = interval_of_replicates([*replicates.values()]) if replicates else proportion.interval_ppm()
     return made(
-        summary.JointYield, trials=own.total, within=own.count, yield_ppm=own.ppm, yield_ppm_95=listed(interval)
+        summary.JointYield,
+        trials=proportion.total,
+        within=proportion.count,
+        yield_ppm=proportion.ppm,
+        yield_ppm_95=listed(interval),
     )
 
 
-def _correlations(own: PairSums, *, independent: bool) -> summary.Correlations:
-    low, high = map(_matrix, own.interval()) if independent else (None, None)
+def _correlations(pair_sums: PairSums, *, independent: bool) -> summary.Correlations:
+    low, high = map(_matrix, pair_sums.interval()) if independent else (None, None)
     return made(
-        summary.Correlations, r=_matrix(own.correlations), r_low_95=low, r_high_95=high, trials=own.counts.tolist()
+        summary.Correlations,
+        r=_matrix(pair_sums.correlations),
+        r_low_95=low,
+        r_high_95=high,
+        trials=pair_sums.counts.tolist(),
     )
 
 

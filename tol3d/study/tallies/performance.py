@@ -56,7 +56,10 @@ class Side:
         then.
         """
         own, count = self.moments, self.moments.count
-        parts = ([each.skewness for each in self.replicates], [each.excess_kurtosis for each in self.replicates])
+        parts = (
+            [replicate.skewness for replicate in self.replicates],
+            [replicate.excess_kurtosis for replicate in self.replicates],
+        )
         errors = (_larger(skewness_se(count), parts[0]), _larger(kurtosis_se(count), parts[1]))
         values = {"skewness": own.skewness, "excess kurtosis": own.excess_kurtosis}
         for (word, value), error in zip(values.items(), errors, strict=True):
@@ -144,8 +147,11 @@ class Judged:
         for (side, margin), sign in zip(self._sides, self._signs, strict=True):
             if (sigma := varying(side, margin)) and side.replicates:
                 limit = side.moments.mean - sign * margin
-                parts = [(own.mean - limit) / own.sigma if own.m2 > 0 else math.nan for own in side.replicates]
-                parts = [sign * own / 3 for own in parts]
+                parts = [
+                    (replicate.mean - limit) / replicate.sigma if replicate.m2 > 0 else math.nan
+                    for replicate in side.replicates
+                ]
+                parts = [sign * part / 3 for part in parts]
                 found.append(replicates_bounds(margin / (3 * sigma), parts, chance))
             elif sigma:
                 found.append(index_bounds(side.moments, margin, sign, chance))

@@ -25,12 +25,12 @@ DIFFERENCE = "difference"  # of both methods, beside them
 MANY_REGRESSORS = 64  # from here on compiling what multiplies them pays
 
 
-def merged(one: Sums, other: Sums) -> Sums:
+def merged(sums: Sums, other: Sums) -> Sums:
     """Sums of the same measure, of both blocks."""
-    if isinstance(one, RegressorSums) and isinstance(other, RegressorSums):
-        return one.merge(other)
-    if isinstance(one, IndependentSums) and isinstance(other, IndependentSums):
-        return one.merge(other)
+    if isinstance(sums, RegressorSums) and isinstance(other, RegressorSums):
+        return sums.merge(other)
+    if isinstance(sums, IndependentSums) and isinstance(other, IndependentSums):
+        return sums.merge(other)
     raise TypeError("sums of different kinds belong to different measures")
 
 
@@ -83,8 +83,8 @@ def _good(key: Key, keys: Sequence[Key], values: Mapping[Key, Array]) -> NDArray
 class _Block:
     """The regressors (regressors, trials) of a set in one block."""
 
-    def __init__(self, own: RegressorSet, rows: Array, products: Products) -> None:
-        self.own, self.rows, self.products = own, rows, products
+    def __init__(self, regressor_set: RegressorSet, rows: Array, products: Products) -> None:
+        self.own, self.rows, self.products = regressor_set, rows, products
 
     def part(self, good: NDArray[np.bool_]) -> "_Block":
         """Block of some of its trials."""
@@ -92,7 +92,7 @@ class _Block:
 
     def sums(self, keys: Sequence[Key], targets: Array) -> tuple[dict[Key, Sums], TargetSums | None]:
         """Sums of targets (targets, trials), and those of the targets among each other where they are known."""
-        known = {own.name: own for own in self.own.measures}
+        known = {measure.name: measure for measure in self.own.measures}
         regressed = [self.own.of(known[name]) for _, name in keys]
         if not self.own.apart:
             rows = [own.rows for own in regressed]

@@ -59,12 +59,12 @@ class Replicated:
     @property
     def mean_se(self) -> float:
         """Standard error of the mean: the standard deviation of the replicates' means over sqrt(replicates)."""
-        return standard_error([own.mean if own.count else math.nan for own in self.moments.values()])
+        return standard_error([moment.mean if moment.count else math.nan for moment in self.moments.values()])
 
     @property
     def sigma_se(self) -> float:
         """Standard error of sigma: the standard deviation of the replicates' sigmas over sqrt(replicates)."""
-        return standard_error([own.sigma for own in self.moments.values()])
+        return standard_error([moment.sigma for moment in self.moments.values()])
 
     @property
     def freedom(self) -> int:

@@ -104,7 +104,7 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
         if measure.take == "curve":
             curves = _values(system, measure, pilot)
             for end in judged_ends(measure):
-                grids[end_name(measure.name, end)] = grid_of(measure, None, [ENDS[end](own) for own in curves])
+                grids[end_name(measure.name, end)] = grid_of(measure, None, [ENDS[end](curve) for curve in curves])
     return grids
 
 
@@ -121,8 +121,8 @@ def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[st
         return {}
     found = [
         amplitudes
-        for own in _values(system, measure, pilot)
-        if len(amplitudes := amplitudes_of(measure, spectrum, own))
+        for value in _values(system, measure, pilot)
+        if len(amplitudes := amplitudes_of(measure, spectrum, value))
     ]
     reach = np.max([own.mean(axis=0) + GRID_SIGMAS * own.std(axis=0) for own in found], axis=0, initial=0.0)
     spans = np.maximum(np.broadcast_to(reach, len(spectrum.orders)), LEAST_SPAN * measure.per_internal).tolist()
@@ -298,7 +298,7 @@ def _unphysical(system: Described, columns: Columns) -> dict[str, int]:
             lengths = components(name) if isinstance(draw, Each) else components(name)[:1]
             counts[name] = int(np.count_nonzero(np.min(lengths, axis=0) < contributor.least))
         elif isinstance(draw, DependentlyJudged):
-            given = {own: np.stack(components(own)) for own in draw.reads}
+            given = {read: np.stack(components(read)) for read in draw.reads}
             counts[name] = int(np.count_nonzero(draw.beyond_given(given, *components(name))))
         elif isinstance(draw, JudgedDraw):
             counts[name] = int(np.count_nonzero(draw.beyond(*components(name))))

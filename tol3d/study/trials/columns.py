@@ -36,7 +36,7 @@ def columns_of(
         geometric value whose status lacks what is measured is an overlap, below 0.
     """
     measures = system.measures if measures is None else measures
-    asked = (own.asked(trials, measures) for own in evaluations(system, method).values())
+    asked = (evaluation.asked(trials, measures) for evaluation in evaluations(system, method).values())
     pieces = [_columns(system, measures, by_method) for by_method in zip(*asked, strict=True)]
     if len(pieces) == 1:
         return pieces[0]
@@ -54,7 +54,9 @@ def _columns(system: System, measures: Sequence[Measure], by_method: Sequence[As
     if len(by_method) == 1:
         return columns
     status, seated = by_method[1].answers.status, np.full(len(by_method[1].trials), OK, dtype=np.int8)
-    return columns | _status_columns(system.statuses, {own.name: status.get(own.name, seated) for own in measures})
+    return columns | _status_columns(
+        system.statuses, {measure.name: status.get(measure.name, seated) for measure in measures}
+    )
 
 
 def drawn_columns(system: System, trials: Trials) -> Columns:

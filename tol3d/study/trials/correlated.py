@@ -52,7 +52,7 @@ def copula_of(scene: Scene, system: System) -> Copula:
     """
     if not scene.correlations:
         return INDEPENDENT
-    known = {own.name: own for own in system.contributors}
+    known = {contributor.name: contributor for contributor in system.contributors}
     said: dict[frozenset[str], float] = {}
     linked: dict[str, set[str]] = {}
     for k, own in enumerate(scene.correlations):
@@ -66,7 +66,7 @@ def copula_of(scene: Scene, system: System) -> Copula:
             said[pair] = rho
         joined = set(own.between).union(*(linked.get(name, ()) for name in own.between))
         linked |= dict.fromkeys(joined, joined)
-    order = [own.name for own in system.contributors if own.name in linked]
+    order = [contributor.name for contributor in system.contributors if contributor.name in linked]
     groups = dict.fromkeys(tuple(name for name in order if name in linked[each]) for each in order)
     return Copula(tuple(_block(scene, names, said) for names in groups))
 
@@ -81,16 +81,16 @@ def _unfit(name: str, known: Mapping[str, Contributor]) -> str:
     if isinstance(draw, Dependent):
         return f"{expected} {name!r}, which depends on {', '.join(draw.reads)}; take it out"
     groups = groups_of(draw)
-    if len(draw.components) != 1 or groups is None or [own.kind for own in groups] != ["scalar"]:
+    if len(draw.components) != 1 or groups is None or [group.kind for group in groups] != ["scalar"]:
         what = "a length with its direction" if draw.components[:2] == ("x", "y") else "of several numbers"
         return f"{expected} {name!r}, {what}; take it out"
     return ""
 
 
-def _pairs(own: CorrelationSpec) -> Iterator[tuple[frozenset[str], float]]:
-    matrix = own.correlation
-    for i, j in combinations(range(len(own.between)), 2):
-        yield frozenset((own.between[i], own.between[j])), float(matrix[i, j])
+def _pairs(correlation: CorrelationSpec) -> Iterator[tuple[frozenset[str], float]]:
+    matrix = correlation.correlation
+    for i, j in combinations(range(len(correlation.between)), 2):
+        yield frozenset((correlation.between[i], correlation.between[j])), float(matrix[i, j])
 
 
 def _block(scene: Scene, names: tuple[str, ...], said: Mapping[frozenset[str], float]) -> Block:
@@ -163,36 +163,38 @@ def closed_form_of(simulation: Simulation, measure: Measure) -> ClosedForm | Non
     There is none either where a contributor that is correlated with another one acts otherwise than by a slope.
     """
     form = simulation.system.closed_form(measure)
-    acting = _acting_together(simulation.copula, [] if form is None else [own.name for own in form.shares])
+    acting = _acting_together(simulation.copula, [] if form is None else [share.name for share in form.shares])
     if form is None or not acting:
         return form
-    draws = {own.name: own.draw for own in simulation.system.contributors}
+    draws = {contributor.name: contributor.draw for contributor in simulation.system.contributors}
     if any(not _by_slope(form, name, draws[name]) for name in acting):
         return None
-    effects = {own.name: own.coefficient * draws[own.name].sigma for own in form.shares if own.name in acting}
+    effects = {share.name: share.coefficient * draws[share.name].sigma for share in form.shares if share.name in acting}
     parts = divided_variances(effects, simulation.copula, draws)
-    more = sum(parts.values()) - sum(own.variance for own in form.shares if own.name in acting)
-    shares = tuple(replace(own, variance=parts[own.name]) if own.name in parts else own for own in form.shares)
+    more = sum(parts.values()) - sum(share.variance for share in form.shares if share.name in acting)
+    shares = tuple(
+        replace(share, variance=parts[share.name]) if share.name in parts else share for share in form.shares
+    )
     return replace(form, sigma=math.sqrt(max(form.sigma**2 + more, 0.0)), shares=shares)
 
 
 def _acting_together(copula: Copula, names: Sequence[str]) -> frozenset[str]:
     """Contributors of some that are correlated with others of them."""
-    blocks = ([name for name in own.names if name in names] for own in copula.blocks)
-    return frozenset(name for own in blocks if len(own) > 1 for name in own)
+    blocks = ([name for name in block.names if name in names] for block in copula.blocks)
+    return frozenset(name for block in blocks if len(block) > 1 for name in block)
 
 
 def _by_slope(form: ClosedForm, name: str, draw: Draw) -> bool:
     """True if a contributor acts on a measure in proportion to its deviation."""
-    (first, *others) = [own for own in form.shares if own.name == name]
+    (first, *others) = [share for share in form.shares if share.name == name]
     linear = (first.coefficient * draw.sigma) ** 2
     return not others and name not in form.leaning and abs(first.variance - linear) <= ALIKE * max(linear, 1e-300)
 
 
 def correlation_warnings(simulation: Simulation) -> Iterator[str]:
     """Warnings of the effect of correlations on the numbers of a study."""
-    for own in simulation.copula.blocks:
-        names = ", ".join(own.names)
+    for block in simulation.copula.blocks:
+        names = ", ".join(block.names)
         yield (
             f"correlated: {names}; their shares of the variance are Shapley effects, of which none is negative; "
             "high–low–mean and the ends of the tolerances take each of them by itself"

@@ -64,13 +64,15 @@ def fill(columns: Array, slices: Mapping[str, slice], contributors: Sequence[Dra
         contributors: each after those that it reads.
         uniforms: of each.
     """
-    for own in contributors:
-        draws = uniforms(own.name, own.draw.uniforms)
-        if isinstance(own.draw, Dependent):
-            found = own.draw.deviations_given({name: columns[slices[name]] for name in own.draw.reads}, *draws)
+    for contributor in contributors:
+        draws = uniforms(contributor.name, contributor.draw.uniforms)
+        if isinstance(contributor.draw, Dependent):
+            found = contributor.draw.deviations_given(
+                {name: columns[slices[name]] for name in contributor.draw.reads}, *draws
+            )
         else:
-            found = own.draw.deviations(*draws)
-        for column, values in zip(columns[slices[own.name]], found, strict=True):
+            found = contributor.draw.deviations(*draws)
+        for column, values in zip(columns[slices[contributor.name]], found, strict=True):
             column[:] = values
 
 
@@ -177,7 +179,7 @@ def kept_draws(simulation: Simulation, count: int, draws: Mapping[str, Draw]) ->
     streams = streams_of(system)
     sampler = sampler_of(simulation, len(streams))
 
-    most = {own.name: own.draw.uniforms for own in system.contributors}
+    most = {contributor.name: contributor.draw.uniforms for contributor in system.contributors}
 
     def drawn(key: StreamKey) -> Array:
         return sampler.uniforms(streams[key], 0, count)
@@ -214,7 +216,7 @@ def _trials(simulation: Simulation, draw: Callable[[Sampler, Stream], Array], co
 def _deviations(simulation: Simulation, uniforms: Callable[[StreamKey], Array], count: int) -> Array:
     system = simulation.system
     columns = np.empty((component_count(system), count))
-    contributors = [DrawnAs(own.name, own.draw) for own in system.contributors]
+    contributors = [DrawnAs(contributor.name, contributor.draw) for contributor in system.contributors]
     fill(columns, component_slices(system), in_draw_order(contributors), _uniforms_of(simulation, uniforms))
     return columns.T
 

@@ -80,7 +80,7 @@ class Evaluation:
             be assembled.
         """
         pieces = []
-        judged = {own.name for own in measures if self.method and not overlaps(own)}
+        judged = {measure.name for measure in measures if self.method and not overlaps(measure)}
         for asked in self.asked(trials, measures):
             found = dict(asked.values)
             for name, codes in asked.answers.status.items():
@@ -90,7 +90,7 @@ class Evaluation:
             pieces.append(found)
         if len(pieces) == 1:
             return pieces[0]
-        return {own.name: np.concatenate([piece[own.name] for piece in pieces]) for own in measures}
+        return {measure.name: np.concatenate([piece[measure.name] for piece in pieces]) for measure in measures}
 
     def asked(self, trials: Trials, measures: Sequence[Measure]) -> Iterator[Asked]:
         """All answers of the method for trials, as many at once as their positions let it."""
@@ -100,7 +100,8 @@ class Evaluation:
             piece = trials.part(first, first + rows)
             answers = method.answers(piece, measures)
             values = {
-                own.name: taken(own, _read(self.name, answers, own, len(piece))) * own.per_internal for own in measures
+                measure.name: taken(measure, _read(self.name, answers, measure, len(piece))) * measure.per_internal
+                for measure in measures
             }
             yield Asked(piece, answers, values)
 
@@ -130,7 +131,9 @@ def measures_alike(system: System, measures: Sequence[Measure]) -> list[tuple[Ma
     alike: dict[tuple[bool, ...], list[Measure]] = {}
     for measure in measures:
         if (positions := measure.positions) not in turning:
-            turning[positions] = tuple(system.turns_at_random(own, positions) for own in system.contributors)
+            turning[positions] = tuple(
+                system.turns_at_random(contributor, positions) for contributor in system.contributors
+            )
         alike.setdefault(turning[positions], []).append(measure)
     return [(dict(zip(names, turns, strict=True)), group) for turns, group in alike.items()]
 

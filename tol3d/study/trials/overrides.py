@@ -76,10 +76,14 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
 
 def _unphysical(system: System) -> Iterator[str]:
     """Warnings of laws that reach below the least physical deviation, such as a negative clearance or play."""
-    for own in system.contributors:
-        if own.least is not None and (low := own.distribution.low) < own.least - LEAST_OFF:
-            words = f"expected at least {own.least / own.per_unit:g} {own.unit}, for less is not physical"
-            yield warned(("tolerances", own.name), f"{words}, got down to {low / own.per_unit:.4g} {own.unit}")
+    for contributor in system.contributors:
+        if contributor.least is not None and (low := contributor.distribution.low) < contributor.least - LEAST_OFF:
+            least = contributor.least / contributor.per_unit
+            words = f"expected at least {least:g} {contributor.unit}, for less is not physical"
+            yield warned(
+                ("tolerances", contributor.name),
+                f"{words}, got down to {low / contributor.per_unit:.4g} {contributor.unit}",
+            )
 
 
 def asked_study(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Study:

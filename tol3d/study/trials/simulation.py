@@ -64,9 +64,9 @@ def lines_of(scene: Scene, contributors: Iterable[Contributor]) -> tuple[Line, .
     files = {str(own.path): name for name, own in origin.files.items()}
     in_files: dict[Place, str] = {}
     found: dict[str, Line] = {}
-    for own in contributors:
-        stated = own.line if isinstance(own, OfLine) else ""
-        line = stated or own.name
+    for contributor in contributors:
+        stated = contributor.line if isinstance(contributor, OfLine) else ""
+        line = stated or contributor.name
         entry = line if line in tolerances else _entry(stated, tolerances)
         move = "" if entry else max((name for name in moves if line.endswith(f" of {name}")), key=len, default="")
         name, in_file = entry or move, ""
@@ -80,7 +80,7 @@ def lines_of(scene: Scene, contributors: Iterable[Contributor]) -> tuple[Line, .
             line = f"{in_file} of {file}"
         known = found.get(line, Line(line, ()))
         entries = (*known.entries, *([entry] if entry and entry not in known.entries else []))
-        found[line] = Line(line, (*known.contributors, own.name), entries, in_file)
+        found[line] = Line(line, (*known.contributors, contributor.name), entries, in_file)
     return tuple(found.values())
 
 

@@ -85,16 +85,16 @@ def in_mate(pose: Pose, x: float, y: float, z: float) -> tuple[float, float, flo
 
 
 @variant(foot, BevelTooth)
-def bevel_foot(own: BevelTooth, mate: BevelTooth, pose: Pose, facing: Facing, q: float, radius: float) -> Foot:
+def bevel_foot(bevel_tooth: BevelTooth, mate: BevelTooth, pose: Pose, facing: Facing, q: float, radius: float) -> Foot:
     """See foot.foot: the point at an in-plane angle [rad] and a cone distance [mm]."""
     own_azimuth, mate_azimuth, sigma, offset = facing
-    f = own_azimuth + sigma * (q * own.per_base - own.half)
+    f = own_azimuth + sigma * (q * bevel_tooth.per_base - bevel_tooth.half)
     cos, sin = math.cos(f), math.sin(f)
     cos_q, sin_q = math.cos(q), math.sin(q)
     # P = R (cos q t - sigma sin q e)
-    dx = cos_q * own.base * cos + sigma * sin_q * sin
-    dy = cos_q * own.base * sin - sigma * sin_q * cos
-    dz = cos_q * own.cosine
+    dx = cos_q * bevel_tooth.base * cos + sigma * sin_q * sin
+    dy = cos_q * bevel_tooth.base * sin - sigma * sin_q * cos
+    dz = cos_q * bevel_tooth.cosine
     ex, ey, ez = in_mate(pose, dx, dy, dz)
     x, y, z = radius * ex + pose.x, radius * ey + pose.y, radius * ez + pose.z
     square = x * x + y * y
@@ -121,8 +121,8 @@ def bevel_foot(own: BevelTooth, mate: BevelTooth, pose: Pose, facing: Facing, q:
     nz = -sin_foot * mate.cosine
     ax, ay, az = mate.cosine * ux, mate.cosine * uy, -mate.base
     # dP/dq = R sin q cot(beta) a, and a turns along sigma e cot(beta)
-    cot = own.cosine * own.per_base
-    bx, by, bz = own.cosine * cos, own.cosine * sin, -own.base
+    cot = bevel_tooth.cosine * bevel_tooth.per_base
+    bx, by, bz = bevel_tooth.cosine * cos, bevel_tooth.cosine * sin, -bevel_tooth.base
     vx, vy, vz = in_mate(pose, bx, by, bz)
     wx, wy, wz = pose.xy * cos - pose.xx * sin, pose.yy * cos - pose.yx * sin, pose.zy * cos - pose.zx * sin
     towards = nx * vx + ny * vy + nz * vz
@@ -148,6 +148,6 @@ def bevel_turn(mate: BevelTooth, gap: float, offset: float, at: Foot) -> float:
 
 
 @variant(line_of_action, BevelTooth)
-def bevel_line_of_action(own: BevelTooth, mate: BevelTooth, pose: Pose, facing: Facing, face: float) -> Nearest:
+def bevel_line_of_action(bevel_tooth: BevelTooth, mate: BevelTooth, pose: Pose, facing: Facing, face: float) -> Nearest:
     """Nothing is closed as soon as the apexes part."""
     return Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)

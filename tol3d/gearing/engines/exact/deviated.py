@@ -79,16 +79,16 @@ def plain(tooth: DeviatedTooth) -> SpurTooth:
 
 
 @part
-def of_plain(tooth: DeviatedTooth, own: SpurTooth, scale: float) -> DeviatedTooth:
+def of_plain(tooth: DeviatedTooth, spur_tooth: SpurTooth, scale: float) -> DeviatedTooth:
     """The same deviations of other involutes."""
     return DeviatedTooth(
-        own.base,
-        own.per_base,
-        own.half,
-        own.begin,
-        own.end,
-        own.low,
-        own.high,
+        spur_tooth.base,
+        spur_tooth.per_base,
+        spur_tooth.half,
+        spur_tooth.begin,
+        spur_tooth.end,
+        spur_tooth.low,
+        spur_tooth.high,
         tooth.scale * scale,
         tooth.middle,
         tooth.per_length,
@@ -193,7 +193,9 @@ def deviated_flank(tooth: DeviatedTooth, flanks: FlankOffsets, gear: int, place:
 
 
 @variant(foot, DeviatedTooth)
-def deviated_foot(own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
+def deviated_foot(
+    deviated_tooth: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: Facing, roll: float, z: float
+) -> Foot:
     """See foot.foot: for the point of own deviated flank, the gap is reduced by the mate's offset at the foot.
 
     A point d outside an involute lies on one that is turned by d/r_b, d/r_b of roll further on. As it rolls on by dt,
@@ -201,17 +203,17 @@ def deviated_foot(own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: F
     nearest, to the order of their slopes. A flank that slopes by s is nearer by s^2/2 of the gap.
     """
     own_azimuth, mate_azimuth, sigma, offset = facing
-    first = offset_at(own, roll, z)
-    ahead = first.value * own.per_base
+    first = offset_at(deviated_tooth, roll, z)
+    ahead = first.value * deviated_tooth.per_base
     before = Facing(own_azimuth - sigma * ahead, mate_azimuth, sigma, offset)
-    at = foot(plain(own), plain(mate), pose, before, roll + ahead, z)
+    at = foot(plain(deviated_tooth), plain(mate), pose, before, roll + ahead, z)
     second = offset_at(mate, at.profile, at.face)
     out = second.value
     if at.profile > 0.0:
         slope = second.by_roll / (mate.base * at.profile)
         out += 0.5 * slope * slope * (at.gap + offset - out)
     tangent = max(at.gap + offset + mate.base * at.profile, mate.base * 1e-9)
-    back = -own.base * roll / tangent
+    back = -deviated_tooth.base * roll / tangent
     lean = sigma * (at.nx * pose.yz - at.ny * pose.xz) / tangent
     return Foot(
         at.gap - out,
@@ -226,7 +228,7 @@ def deviated_foot(own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: F
         at.nz,
         at.by_profile - first.by_roll - second.by_roll * back,
         at.by_face - first.by_face - second.by_face * pose.zz - second.by_roll * lean,
-        max(at.bend - first.bend - second.bend * back * back, LEAST_BEND * own.base),
+        max(at.bend - first.bend - second.bend * back * back, LEAST_BEND * deviated_tooth.base),
         at.twist,
         at.bow,
         0.0,
@@ -254,17 +256,17 @@ def deviated_turn(mate: DeviatedTooth, gap: float, offset: float, at: Foot) -> f
 
 @variant(line_of_action, DeviatedTooth)
 def deviated_line_of_action(
-    own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: Facing, face: float
+    deviated_tooth: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: Facing, face: float
 ) -> Nearest:
     """Nearest points of parallel involutes as for SpurTooth, but with the pair's own gap; nowhere for other flanks."""
     own_azimuth, mate_azimuth, sigma, offset = facing
-    out = own.level + mate.level
-    if not (is_level(own) and is_level(mate)):
+    out = deviated_tooth.level + mate.level
+    if not (is_level(deviated_tooth) and is_level(mate)):
         return Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
     apart = Facing(own_azimuth, mate_azimuth, sigma, offset + out)
-    near = line_of_action(plain(own), plain(mate), pose, apart, face)
+    near = line_of_action(plain(deviated_tooth), plain(mate), pose, apart, face)
     how = NOWHERE if near.how == NOWHERE else CLOSED
-    x, y = near.x - own.level * near.nx, near.y - own.level * near.ny
+    x, y = near.x - deviated_tooth.level * near.nx, near.y - deviated_tooth.level * near.ny
     return Nearest(
         near.gap, near.turn, how, near.profile, near.face, x, y, near.z, near.nx, near.ny, near.nz, near.at_end, 0.0
     )

@@ -24,7 +24,7 @@ from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose, turned
 from tol3d.gearing.engines.exact.reach import within_reach
 from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, gap_row, looks_of, read_row, write_contact
 from tol3d.gearing.engines.exact.tooth_contact import Sight, Touch, edge_gap, height, most_out, sight, touch, wrapped
-from tol3d.gearing.engines.gaps import INTERFERES, OK, OUT_OF_RANGE
+from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 
@@ -111,14 +111,18 @@ def turns_later(mate: DeviatedTooth, gap: float, first: Touch) -> bool:
 
 @part
 def far_beyond(
-    own: DeviatedTooth, mate: DeviatedTooth, tangent: float, gap: float, rolls: tuple[float, float]
+    deviated_tooth: DeviatedTooth, mate: DeviatedTooth, tangent: float, gap: float, rolls: tuple[float, float]
 ) -> float:
     """The least gap [mm] of a pair beyond the path of contact, whose involutes there are a gap apart."""
-    least, beyond, mate_beyond = gap - most_out(own) - most_out(mate), rolls[0] - own.end, rolls[1] - mate.end
+    least, beyond, mate_beyond = (
+        gap - most_out(deviated_tooth) - most_out(mate),
+        rolls[0] - deviated_tooth.end,
+        rolls[1] - mate.end,
+    )
     if beyond > 0.0:
-        least += edge_gap(own, mate, tangent, beyond)
+        least += edge_gap(deviated_tooth, mate, tangent, beyond)
     if mate_beyond > 0.0:
-        least += edge_gap(mate, own, tangent, mate_beyond)
+        least += edge_gap(mate, deviated_tooth, tangent, mate_beyond)
     return least
 
 

@@ -7,13 +7,14 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.builds.build import Build
 from tol3d.gearing.builds.flank_offsets import FlankPlaces
+from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
-from tol3d.gearing.engines.exact.deviation_sums import compiled_displacements
 from tol3d.gearing.engines.exact.flank_contact import ALL_TEETH, DRIVEN_TOOTH, DRIVER_TOOTH
 from tol3d.gearing.engines.exact.kernels import PairKernels, deviated_gaps, deviated_read, deviated_rests, kernels_of
 from tol3d.gearing.engines.exact.rows import CONTACT, DRIVEN_ANGLE, DRIVEN_TURN, DRIVER_TURN, GAP, READINGS
 from tol3d.gearing.engines.exact.spur import SpurTooth
-from tol3d.gearing.engines.gaps import OUT_OF_RANGE, Gaps, MeshReading
+from tol3d.gearing.engines.gaps import Gaps, MeshReading
+from tol3d.gearing.engines.status import OUT_OF_RANGE
 from tol3d.gearing.model import Mesh, Model, Reading, TransmissionError
 from tol3d.gearing.model.flank_margin import margin_of, standing_out
 from tol3d.gears import Flank

@@ -91,10 +91,10 @@ def internal_radius(driver: InternalTooth, driven: InternalTooth, tangent: float
 
 @variant(foot, InternalTooth)
 def internal_foot(
-    own: InternalTooth, mate: InternalTooth, pose: Pose, facing: Facing, profile: float, z: float
+    internal_tooth: InternalTooth, mate: InternalTooth, pose: Pose, facing: Facing, profile: float, z: float
 ) -> Foot:
     """See foot.foot: the point at a roll times sense [rad] and a height [mm]; sigma is the side of unwinding."""
-    return involute_foot(own, mate, (own.sense, mate.sense), pose, facing, profile, z)
+    return involute_foot(internal_tooth, mate, (internal_tooth.sense, mate.sense), pose, facing, profile, z)
 
 
 @variant(turn_to, InternalTooth)
@@ -105,7 +105,7 @@ def internal_turn(mate: InternalTooth, gap: float, offset: float, at: Foot) -> f
 
 @variant(line_of_action, InternalTooth)
 def internal_line_of_action(
-    own: InternalTooth, mate: InternalTooth, pose: Pose, facing: Facing, face: float
+    internal_tooth: InternalTooth, mate: InternalTooth, pose: Pose, facing: Facing, face: float
 ) -> Nearest:
     """On parallel axes flanks touch on the line that touches both base circles, whose ends are T apart.
 
@@ -114,10 +114,13 @@ def internal_line_of_action(
     """
     own_azimuth, mate_azimuth, sigma, offset = facing
     nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
-    square, bases = pose.x * pose.x + pose.y * pose.y, -own.sense * own.base - mate.sense * mate.base
+    square, bases = (
+        pose.x * pose.x + pose.y * pose.y,
+        -internal_tooth.sense * internal_tooth.base - mate.sense * mate.base,
+    )
     if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:
         return nowhere
-    low, high = max(own.low, mate.low - pose.z), min(own.high, mate.high - pose.z)
+    low, high = max(internal_tooth.low, mate.low - pose.z), min(internal_tooth.high, mate.high - pose.z)
     if low > high:
         return nowhere
     tangent = math.sqrt(square - bases * bases)
@@ -127,14 +130,18 @@ def internal_line_of_action(
     centres = math.atan2(cy, cx)
     # turned about z against each other, the gears see one direction at different azimuths
     twist = math.atan2(pose.yx, pose.xx) if pose.yx != 0.0 else 0.0
-    angle = working + own.half - sigma * (own_azimuth + twist - centres)
+    angle = working + internal_tooth.half - sigma * (own_azimuth + twist - centres)
     roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
     angle = working + mate.half - sigma * (mate_azimuth - centres)
     mate_roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
-    gap = -own.sense * own.base * roll - mate.sense * mate.base * mate_roll - tangent - offset
-    profile, foot_at = own.sense * roll, mate.sense * mate_roll
+    gap = -internal_tooth.sense * internal_tooth.base * roll - mate.sense * mate.base * mate_roll - tangent - offset
+    profile, foot_at = internal_tooth.sense * roll, mate.sense * mate_roll
     touching = foot_at + gap * mate.per_base
-    if not (own.begin <= profile <= own.end and mate.begin <= foot_at <= mate.end and touching <= mate.end):
+    if not (
+        internal_tooth.begin <= profile <= internal_tooth.end
+        and mate.begin <= foot_at <= mate.end
+        and touching <= mate.end
+    ):
         return nowhere
     scale = 1.0 / square
     ux, uy = scale * (cx * bases - sigma * cy * tangent), scale * (cy * bases + sigma * cx * tangent)

@@ -13,7 +13,7 @@ from tol3d.gearing.engines.exact.foot import opening
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.reach import within_reach
 from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, write_contact
-from tol3d.gearing.engines.gaps import INTERFERES, OK, OUT_OF_RANGE
+from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 

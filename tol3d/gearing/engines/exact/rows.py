@@ -23,7 +23,7 @@ from tol3d.gearing.engines.exact.foot import grown, opening, section
 from tol3d.gearing.engines.exact.nearest import SHARP_FALL
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.reach import within_reach
-from tol3d.gearing.engines.gaps import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
+from tol3d.gearing.engines.status import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 from tol3d.numerics.loops import fill

@@ -124,9 +124,9 @@ def involute_foot(
 
 
 @variant(foot, SpurTooth)
-def spur_foot(own: SpurTooth, mate: SpurTooth, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
+def spur_foot(spur_tooth: SpurTooth, mate: SpurTooth, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
     """See foot.foot: the point at a roll [rad] and a height [mm]."""
-    return involute_foot(own, mate, (1.0, 1.0), pose, facing, roll, z)
+    return involute_foot(spur_tooth, mate, (1.0, 1.0), pose, facing, roll, z)
 
 
 @variant(turn_to, SpurTooth)
@@ -136,7 +136,7 @@ def spur_turn(mate: SpurTooth, gap: float, offset: float, at: Foot) -> float:
 
 
 @variant(line_of_action, SpurTooth)
-def spur_line_of_action(own: SpurTooth, mate: SpurTooth, pose: Pose, facing: Facing, face: float) -> Nearest:
+def spur_line_of_action(spur_tooth: SpurTooth, mate: SpurTooth, pose: Pose, facing: Facing, face: float) -> Nearest:
     """On parallel axes flanks touch where they cross the tangent of both base circles, T long.
 
     From its ends the flanks stand r_b t away, t = alpha_w + eta_b - sigma (azimuth off the line of centres): what is
@@ -144,10 +144,10 @@ def spur_line_of_action(own: SpurTooth, mate: SpurTooth, pose: Pose, facing: Fac
     """
     own_azimuth, mate_azimuth, sigma, offset = facing
     nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
-    square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
+    square, bases = pose.x * pose.x + pose.y * pose.y, spur_tooth.base + mate.base
     if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:
         return nowhere
-    low, high = max(own.low, mate.low - pose.z), min(own.high, mate.high - pose.z)
+    low, high = max(spur_tooth.low, mate.low - pose.z), min(spur_tooth.high, mate.high - pose.z)
     if low > high:
         return nowhere
     tangent = math.sqrt(square - bases * bases)
@@ -155,18 +155,20 @@ def spur_line_of_action(own: SpurTooth, mate: SpurTooth, pose: Pose, facing: Fac
     centres = math.atan2(pose.y, pose.x)
     # turned about z against each other, the gears see one direction at different azimuths
     twist = math.atan2(pose.yx, pose.xx) if pose.yx != 0.0 else 0.0
-    angle = working + own.half - sigma * (own_azimuth + twist - centres - math.pi)
+    angle = working + spur_tooth.half - sigma * (own_azimuth + twist - centres - math.pi)
     roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
     angle = working + mate.half - sigma * (mate_azimuth - centres)
     mate_roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
-    gap = tangent - own.base * roll - mate.base * mate_roll - offset
+    gap = tangent - spur_tooth.base * roll - mate.base * mate_roll - offset
     touching = mate_roll + gap * mate.per_base
-    if not (own.begin <= roll <= own.end and mate.begin <= mate_roll <= mate.end and touching <= mate.end):
+    if not (
+        spur_tooth.begin <= roll <= spur_tooth.end and mate.begin <= mate_roll <= mate.end and touching <= mate.end
+    ):
         return nowhere
     scale = 1.0 / square
     ux, uy = scale * (pose.x * bases - sigma * pose.y * tangent), scale * (pose.y * bases + sigma * pose.x * tangent)
     nx, ny = sigma * uy, -sigma * ux
-    along = tangent - own.base * roll
+    along = tangent - spur_tooth.base * roll
     at = min(max(face, low), high)
     x, y = mate.base * ux + along * nx, mate.base * uy + along * ny
     return Nearest(gap, gap * mate.per_base, ALIKE, roll, at, x, y, at + pose.z, nx, ny, 0.0, False, 0.0)

@@ -59,17 +59,17 @@ class Touch(NamedTuple):
 
 
 @part
-def sight(own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, sigma: float) -> Sight:
+def sight(deviated_tooth: DeviatedTooth, mate: DeviatedTooth, pose: Pose, sigma: float) -> Sight:
     """One side of two gears; see spur.spur_line_of_action."""
-    square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
-    low, high = max(own.low, mate.low - pose.z), min(own.high, mate.high - pose.z)
+    square, bases = pose.x * pose.x + pose.y * pose.y, deviated_tooth.base + mate.base
+    low, high = max(deviated_tooth.low, mate.low - pose.z), min(deviated_tooth.high, mate.high - pose.z)
     parallel = pose.xz == 0.0 and pose.yz == 0.0 and pose.zz > 0.0
     if not parallel or square <= bases * bases or low > high:
         return Sight(False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     tangent = math.sqrt(square - bases * bases)
     working, centres = math.atan2(tangent, bases), math.atan2(pose.y, pose.x)
     twist = math.atan2(pose.yx, pose.xx) if pose.yx != 0.0 else 0.0
-    first = working + own.half + sigma * (centres + math.pi - twist)
+    first = working + deviated_tooth.half + sigma * (centres + math.pi - twist)
     second = working + mate.half + sigma * centres
     ux, uy = pose.x * bases - sigma * pose.y * tangent, pose.y * bases + sigma * pose.x * tangent
     return Sight(True, tangent, first, second, low, high, sigma * uy / square, -sigma * ux / square)
@@ -118,29 +118,29 @@ def most_out(tooth: DeviatedTooth) -> float:
 
 
 @part
-def edge_gap(own: DeviatedTooth, mate: DeviatedTooth, tangent: float, beyond: float) -> float:
+def edge_gap(deviated_tooth: DeviatedTooth, mate: DeviatedTooth, tangent: float, beyond: float) -> float:
     """Least distance of own tip edge from the mate [mm] for a pair so far beyond the path of contact [rad].
 
     Just beyond it is b d^2/2, b = rho T/(T - rho) with the edge's radius of curvature rho: the mate's, T - rho, grows
     by less than the arc r_b d on the way.
     """
-    radius = own.base * own.end
-    mating = max(tangent - radius, 0.0) + own.base * beyond
+    radius = deviated_tooth.base * deviated_tooth.end
+    mating = max(tangent - radius, 0.0) + deviated_tooth.base * beyond
     return EDGE_SHARE * 0.5 * radius * tangent / mating * beyond * beyond
 
 
 @part
-def level_touch(own: DeviatedTooth, mate: DeviatedTooth, gap: float, mate_roll: float) -> Touch:
+def level_touch(deviated_tooth: DeviatedTooth, mate: DeviatedTooth, gap: float, mate_roll: float) -> Touch:
     """Touch of two parallel involutes, plain flanks a gap [mm] apart, at the mate's roll [rad]."""
-    gap -= own.level + mate.level
+    gap -= deviated_tooth.level + mate.level
     turn = gap * mate.per_base
     return Touch(mate_roll + turn <= mate.end, gap, turn, 0.0)
 
 
 @part
-def height(own: DeviatedTooth, mate: DeviatedTooth, low: float, high: float, face: float) -> float:
+def height(deviated_tooth: DeviatedTooth, mate: DeviatedTooth, low: float, high: float, face: float) -> float:
     """Height on own face with the largest sum of both offsets [mm], between two ends; `face` if they are level."""
-    lean = own.helix * own.per_face + mate.helix * mate.per_face
+    lean = deviated_tooth.helix * deviated_tooth.per_face + mate.helix * mate.per_face
     return high if lean > 0.0 else (low if lean < 0.0 else min(max(face, low), high))
 
 
@@ -168,7 +168,7 @@ def touched(
 
 @part
 def touch(
-    own: DeviatedTooth,
+    deviated_tooth: DeviatedTooth,
     mate: DeviatedTooth,
     tangent: float,
     gap: float,
@@ -185,39 +185,39 @@ def touch(
         heights: at which flanks are evaluated, of own and mate [mm].
     """
     unknown = Touch(False, 0.0, 0.0, 0.0)
-    roll, least = rolls[0], rolls[0] - own.end
-    rho, mate_rho = own.base * roll, tangent - own.base * roll
-    if roll < own.begin or rho < SHORTEST or mate_rho < SHORTEST:
+    roll, least = rolls[0], rolls[0] - deviated_tooth.end
+    rho, mate_rho = deviated_tooth.base * roll, tangent - deviated_tooth.base * roll
+    if roll < deviated_tooth.begin or rho < SHORTEST or mate_rho < SHORTEST:
         return unknown
-    if least <= 0.0 and mate.begin <= rolls[1] <= mate.end and is_level(own) and is_level(mate):
-        return level_touch(own, mate, gap, rolls[1])
+    if least <= 0.0 and mate.begin <= rolls[1] <= mate.end and is_level(deviated_tooth) and is_level(mate):
+        return level_touch(deviated_tooth, mate, gap, rolls[1])
     start = max(least, 0.0)
     d, grown, theta = start, 0.0, 0.0
-    cos, sin = wave_at(own, roll - start)
-    first = offset_of(own, roll - start, heights[0], cos, sin)
+    cos, sin = wave_at(deviated_tooth, roll - start)
+    first = offset_of(deviated_tooth, roll - start, heights[0], cos, sin)
     string = mate_rho - first.value
     if start > 0.0:
-        grown, string, theta = beside(own.base, mate.base, rho + first.value, string, start)
+        grown, string, theta = beside(deviated_tooth.base, mate.base, rho + first.value, string, start)
     begin = theta
     mate_roll = rolls[1] - begin
     mate_cos, mate_sin = wave_at(mate, mate_roll)
     second = offset_of(mate, mate_roll, heights[1], mate_cos, mate_sin)
     fall = math.inf
     for _ in range(STEPS):
-        speed = rho + first.value - own.base * d
+        speed = rho + first.value - deviated_tooth.base * d
         ratio = speed / string
         by_d = speed * sine(d - theta) + first.by_roll - second.by_roll * ratio
         bend = speed * (1.0 + ratio) - first.bend - second.bend * ratio * ratio
-        bend = max(bend, LEAST_BEND * own.base)
+        bend = max(bend, LEAST_BEND * deviated_tooth.base)
         on = max(d - by_d / bend, least)
         fall = 0.5 * by_d * by_d / bend if on > least else 0.0
         if on == d or (on > least and fall < LAST_FALL):
             break
         d, own_roll, fall = on, roll - on, math.inf
-        if own_roll <= own.begin or d - start > SMALL:
+        if own_roll <= deviated_tooth.begin or d - start > SMALL:
             return unknown
-        first = near_offset(own, own_roll, heights[0], cos, sin, start - d)
-        grown, string, theta = beside(own.base, mate.base, rho + first.value, mate_rho - first.value, d)
+        first = near_offset(deviated_tooth, own_roll, heights[0], cos, sin, start - d)
+        grown, string, theta = beside(deviated_tooth.base, mate.base, rho + first.value, mate_rho - first.value, d)
         mate_roll = rolls[1] - theta
         second = near_offset(mate, mate_roll, heights[1], mate_cos, mate_sin, begin - theta)
     if fall >= LAST_FALL or not mate.begin <= mate_roll <= mate.end:

@@ -13,8 +13,8 @@ from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import InternalGearSpec, SpurGearSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.gears import SpurGear
+from tol3d.gears.flank import LEFT, RIGHT, Flank
 from tol3d.gears.iso1328 import CLASSES, FlankTolerances, flank_tolerances
-from tol3d.gears.toothed_gear import LEFT, RIGHT, Flank
 from tol3d.scene.bases import MoveSpec, PartSpec, ToleranceEntry
 from tol3d.scene.entry import AboutOne, Contradiction, Entry
 from tol3d.scene.name import Name

@@ -147,4 +147,4 @@ class Contact:
 def _offsets(deviated: Deviated) -> Array:
     """Sum of the largest offsets of centres of each kind (trials,) [mm]."""
     kinds = (deviated.central_offset, deviated.planet_offset, deviated.pins, deviated.aside)
-    return np.asarray(sum(np.sqrt((own * own).sum(axis=-1)).reshape(len(own), -1).max(axis=1) for own in kinds))
+    return np.asarray(sum(np.sqrt((kind * kind).sum(axis=-1)).reshape(len(kind), -1).max(axis=1) for kind in kinds))

@@ -38,16 +38,16 @@ class FlankGap:
     bodies: tuple[str, str]
 
 
-def flank_gaps(own: PlanetarySet, gears: Sequence[PlacedGear]) -> Iterator[FlankGap]:
+def flank_gaps(planetary_set: PlanetarySet, gears: Sequence[PlacedGear]) -> Iterator[FlankGap]:
     """Both gaps of each mesh of each planet.
 
     Args:
         gears: central gears, then those of each planet, as ShownSet has them.
     """
-    count, steps = len(own.meshes), len(own.gears)
-    for k in range(own.planets):
-        for m, mesh in enumerate(own.meshes):
-            central, planet = gears[m], gears[count + k * steps + own.gear_of(mesh)]
+    count, steps = len(planetary_set.meshes), len(planetary_set.gears)
+    for k in range(planetary_set.planets):
+        for m, mesh in enumerate(planetary_set.meshes):
+            central, planet = gears[m], gears[count + k * steps + planetary_set.gear_of(mesh)]
             for flank in (RIGHT, LEFT):
                 value, point = _gap(central, planet, flank)
                 yield FlankGap(k, m, flank, value, point, (central.name, planet.name))

@@ -45,7 +45,7 @@ class ShownSet:
     pins: tuple[Array, ...]
 
 
-def shown_set(own: PlanetarySet, made: Made, deviated: Deviated, turns: float) -> ShownSet:
+def shown_set(planetary_set: PlanetarySet, made: Made, deviated: Deviated, turns: float) -> ShownSet:
     """A set of one trial at some turns of its output.
 
     Args:
@@ -53,27 +53,39 @@ def shown_set(own: PlanetarySet, made: Made, deviated: Deviated, turns: float) -
         deviated: of one trial.
         turns: of the output.
     """
-    free, reached = Contact(own).seated(deviated, np.array([turns]), own.output, own.opposite(own.output))
+    free, reached = Contact(planetary_set).seated(
+        deviated, np.array([turns]), planetary_set.output, planetary_set.opposite(planetary_set.output)
+    )
     at = np.nan_to_num(reached[0, 1])
-    gears, pins = placed_gears(own, made, deviated, turns, at), placed_pins(own, deviated, turns, at)
-    return ShownSet(own, gears, int(free.status[0]), made, deviated, turns, pins)
+    gears, pins = (
+        placed_gears(planetary_set, made, deviated, turns, at),
+        placed_pins(planetary_set, deviated, turns, at),
+    )
+    return ShownSet(planetary_set, gears, int(free.status[0]), made, deviated, turns, pins)
 
 
-def placed_pins(own: PlanetarySet, deviated: Deviated, turns: float, at: Array) -> tuple[Array, ...]:
+def placed_pins(planetary_set: PlanetarySet, deviated: Deviated, turns: float, at: Array) -> tuple[Array, ...]:
     """Axes of the planets (2,) [mm]; arguments as of placed_gears."""
-    count, carrier, pins = len(own.meshes), _carrier_angle(own, turns), []
-    for k in range(own.planets):
-        pushed = sum(at[count + 1 + own.planets + j] * spring.sense(k) for j, spring in enumerate(own.springs))
-        arm = carrier + own.azimuths[k] + at[count] + pushed / own.centre_distance
-        pins.append(_turned(np.array([own.centre_distance + deviated.pins[0, k, 0], deviated.pins[0, k, 1]]), arm))
+    count, carrier, pins = len(planetary_set.meshes), _carrier_angle(planetary_set, turns), []
+    for k in range(planetary_set.planets):
+        pushed = sum(
+            at[count + 1 + planetary_set.planets + j] * spring.sense(k)
+            for j, spring in enumerate(planetary_set.springs)
+        )
+        arm = carrier + planetary_set.azimuths[k] + at[count] + pushed / planetary_set.centre_distance
+        pins.append(
+            _turned(np.array([planetary_set.centre_distance + deviated.pins[0, k, 0], deviated.pins[0, k, 1]]), arm)
+        )
     return tuple(pins)
 
 
-def _carrier_angle(own: PlanetarySet, turns: float) -> float:
-    return -2 * math.pi * float(own.turn(own.held) * own.planet_turns) * turns
+def _carrier_angle(planetary_set: PlanetarySet, turns: float) -> float:
+    return -2 * math.pi * float(planetary_set.turn(planetary_set.held) * planetary_set.planet_turns) * turns
 
 
-def placed_gears(own: PlanetarySet, made: Made, deviated: Deviated, turns: float, at: Array) -> tuple[PlacedGear, ...]:
+def placed_gears(
+    planetary_set: PlanetarySet, made: Made, deviated: Deviated, turns: float, at: Array
+) -> tuple[PlacedGear, ...]:
     """Central gears, then those of each planet, where they stand.
 
     Args:
@@ -81,18 +93,31 @@ def placed_gears(own: PlanetarySet, made: Made, deviated: Deviated, turns: float
         at: turns of shafts and planets [rad] and displacements by springs [mm], beyond where no backlash would have
             them.
     """
-    carrier, heights, count = _carrier_angle(own, turns), _heights(own, made), len(own.meshes)
+    carrier, heights, count = (
+        _carrier_angle(planetary_set, turns),
+        _heights(planetary_set, made),
+        len(planetary_set.meshes),
+    )
     found = []
-    for m, mesh in enumerate(own.meshes):
-        angle = carrier + 2 * math.pi * float(own.turn(mesh.central.name) * own.planet_turns) * turns
+    for m, mesh in enumerate(planetary_set.meshes):
+        angle = (
+            carrier + 2 * math.pi * float(planetary_set.turn(mesh.central.name) * planetary_set.planet_turns) * turns
+        )
         angle += at[m] + deviated.central_clocking[0, m]
         place = _turned(deviated.central_offset[0, m], angle) - _turned(deviated.aside[0, m], carrier)
         thick = deviated.central_thickness[0, m] / (mesh.central.module * mesh.central.teeth)
-        pose = upright_pose(angle + mesh.facing, place, heights[own.gear_of(mesh)])
+        pose = upright_pose(angle + mesh.facing, place, heights[planetary_set.gear_of(mesh)])
         found.append(PlacedGear(mesh.central.name, made[mesh.central.name], pose, float(thick), 1.0))
-    for k, pin in enumerate(placed_pins(own, deviated, turns, at)):
-        for g, gear in enumerate(own.gears):  # tooth 0 of the first planet's points outwards where nothing has turned
-            angle = carrier + 2 * math.pi * float(own.planet_turns) * turns + own.azimuths[k] + own.phase(k)
+    for k, pin in enumerate(placed_pins(planetary_set, deviated, turns, at)):
+        for g, gear in enumerate(
+            planetary_set.gears
+        ):  # tooth 0 of the first planet's points outwards where nothing has turned
+            angle = (
+                carrier
+                + 2 * math.pi * float(planetary_set.planet_turns) * turns
+                + planetary_set.azimuths[k]
+                + planetary_set.phase(k)
+            )
             angle += at[count + 1 + k] + deviated.planet_clocking[0, g, k]
             place = pin + _turned(deviated.planet_offset[0, g, k], angle)
             thick = deviated.planet_thickness[0, g, k] / (gear.module * gear.teeth)
@@ -101,21 +126,23 @@ def placed_gears(own: PlanetarySet, made: Made, deviated: Deviated, turns: float
     return tuple(found)
 
 
-def made_gears(scene: Scene, own: PlanetarySet) -> Made:
+def made_gears(scene: Scene, planetary_set: PlanetarySet) -> Made:
     """The gears of a set, nominal."""
-    return {gear.name: cylindrical_gear(scene, gear.name) for gear in own.all_gears}
+    return {gear.name: cylindrical_gear(scene, gear.name) for gear in planetary_set.all_gears}
 
 
-def heights_of(own: PlanetarySet, made: Made) -> Mapping[str, float]:
+def heights_of(planetary_set: PlanetarySet, made: Made) -> Mapping[str, float]:
     """Height of the middle of each central gear's face along the axis of a set [mm]; 0 for the carrier."""
-    heights = _heights(own, made)
-    return {mesh.central.name: heights[own.gear_of(mesh)] for mesh in own.meshes} | {own.carrier: 0.0}
+    heights = _heights(planetary_set, made)
+    return {mesh.central.name: heights[planetary_set.gear_of(mesh)] for mesh in planetary_set.meshes} | {
+        planetary_set.carrier: 0.0
+    }
 
 
-def _heights(own: PlanetarySet, made: Made) -> list[float]:
+def _heights(planetary_set: PlanetarySet, made: Made) -> list[float]:
     """Middles of the faces of a planet's gears along the axis [mm]; the first lies at 0."""
     heights, above = [], 0.0
-    for k, gear in enumerate(own.gears):
+    for k, gear in enumerate(planetary_set.gears):
         width = made[gear.name].face_width
         heights.append(above + width / 2 if k else 0.0)
         above = heights[-1] + width * (0.5 + BETWEEN)
@@ -201,33 +228,36 @@ def opened(shown: ShownSet, frames: int) -> tuple[MovedSet, ...]:
     return (*states, _state(shown, shown.own, 0.0, reached[0, HIGH], ends[0]))
 
 
-def displaced(own: PlanetarySet, displacements: Sequence[float] | Array) -> PlanetarySet:
+def displaced(planetary_set: PlanetarySet, displacements: Sequence[float] | Array) -> PlanetarySet:
     """The set with each of its springs set to a displacement [mm]."""
-    springs = zip(own.springs, displacements, strict=True)
-    return replace(own, springs=tuple(replace(spring, displacement=float(at)) for spring, at in springs))
+    springs = zip(planetary_set.springs, displacements, strict=True)
+    return replace(planetary_set, springs=tuple(replace(spring, displacement=float(at)) for spring, at in springs))
 
 
-def _seated(own: PlanetarySet, deviated: Deviated, turns: Array) -> tuple[Array, Array]:
+def _seated(planetary_set: PlanetarySet, deviated: Deviated, turns: Array) -> tuple[Array, Array]:
     """Ends of the output's turn (positions, 2) [rad] and all coordinates there (positions, 2, coordinates).
 
     Raises:
         InputError: the set jams.
     """
-    free, reached = Contact(own).seated(
-        deviated[np.zeros(len(turns), dtype=np.int64)], turns, own.output, own.opposite(own.output)
+    free, reached = Contact(planetary_set).seated(
+        deviated[np.zeros(len(turns), dtype=np.int64)],
+        turns,
+        planetary_set.output,
+        planetary_set.opposite(planetary_set.output),
     )
     if free.status.any():
         raise InputError("the set jams, so that nothing of it moves; choose another trial")
     return free.ends, reached
 
 
-def _state(shown: ShownSet, own: PlanetarySet, beyond: float, at: Array, ends: Array) -> MovedSet:
-    gears = placed_gears(own, shown.made, shown.deviated, shown.turns + beyond, at)
-    pins = placed_pins(own, shown.deviated, shown.turns + beyond, at)
+def _state(shown: ShownSet, planetary_set: PlanetarySet, beyond: float, at: Array, ends: Array) -> MovedSet:
+    gears = placed_gears(planetary_set, shown.made, shown.deviated, shown.turns + beyond, at)
+    pins = placed_pins(planetary_set, shown.deviated, shown.turns + beyond, at)
     return MovedSet(gears, pins, beyond, at, float(ends[1] - ends[0]))
 
 
-def shaft_turn(own: PlanetarySet, state: MovedSet, shaft: str) -> float:
+def shaft_turn(planetary_set: PlanetarySet, state: MovedSet, shaft: str) -> float:
     """Turn of a shaft [rad], counted from its position without backlash in the trial."""
-    rate = float((own.turn(shaft) - own.turn(own.held)) * own.planet_turns)
-    return 2 * math.pi * rate * state.turns + float(state.at[own.shafts.index(shaft)])
+    rate = float((planetary_set.turn(shaft) - planetary_set.turn(planetary_set.held)) * planetary_set.planet_turns)
+    return 2 * math.pi * rate * state.turns + float(state.at[planetary_set.shafts.index(shaft)])

@@ -178,18 +178,18 @@ INDEPENDENT: Final = 1e-9  # of relations in mm a turn; those of less decide not
 ALIKE: Final = 12  # decimals; planets that stand alike have the same relations
 
 
-def play_bound(own: PlanetarySet, shaft: str, errors: Sequence[float]) -> float:
+def play_bound(planetary_set: PlanetarySet, shaft: str, errors: Sequence[float]) -> float:
     """Largest change of a shaft's end [rad] where each gap of a mesh is off by up to an error.
 
     Args:
         shaft: the input or the output; the other one stands.
         errors: of each mesh [mm].
     """
-    relations, amounts = (np.array(each) for each in zip(*_relations(own, shaft, errors), strict=True))
+    relations, amounts = (np.array(each) for each in zip(*_relations(planetary_set, shaft, errors), strict=True))
     _, first = np.unique(np.round(np.column_stack([relations, amounts]), ALIKE), axis=0, return_index=True)
     relations, amounts = relations[first], amounts[first]
     turn = np.zeros(relations.shape[1])
-    turn[_coordinates(own, shaft).index(own.shafts.index(shaft))] = 1.0
+    turn[_coordinates(planetary_set, shaft).index(planetary_set.shafts.index(shaft))] = 1.0
     worst = 0.0
     for chosen in combinations(range(len(relations)), relations.shape[1]):
         basis = relations[list(chosen)]
@@ -198,21 +198,21 @@ def play_bound(own: PlanetarySet, shaft: str, errors: Sequence[float]) -> float:
     return worst
 
 
-def _coordinates(own: PlanetarySet, shaft: str) -> list[int]:
+def _coordinates(planetary_set: PlanetarySet, shaft: str) -> list[int]:
     """Unknowns that are no planet's."""
-    planets = range(len(own.shafts), len(own.shafts) + own.planets)
-    return [place for place in own.unknowns(own.opposite(shaft)) if place not in planets]
+    planets = range(len(planetary_set.shafts), len(planetary_set.shafts) + planetary_set.planets)
+    return [place for place in planetary_set.unknowns(planetary_set.opposite(shaft)) if place not in planets]
 
 
-def _relations(own: PlanetarySet, shaft: str, errors: Sequence[float]) -> Iterator[tuple[Array, float]]:
+def _relations(planetary_set: PlanetarySet, shaft: str, errors: Sequence[float]) -> Iterator[tuple[Array, float]]:
     """Each with its largest error [mm a mm of the planet's base radius]; springs that are set are exact."""
-    coordinates, count = _coordinates(own, shaft), len(own.meshes)
-    for planet in range(own.planets):
-        rows = own.all_rows[planet * count : (planet + 1) * count]
-        radii = rows[:, len(own.shafts) + planet]
+    coordinates, count = _coordinates(planetary_set, shaft), len(planetary_set.meshes)
+    for planet in range(planetary_set.planets):
+        rows = planetary_set.all_rows[planet * count : (planet + 1) * count]
+        radii = rows[:, len(planetary_set.shafts) + planet]
         for one, other in combinations(range(count), 2):
             relation = rows[one] / radii[one] - rows[other] / radii[other]
             yield relation[coordinates], errors[one] / radii[one] + errors[other] / radii[other]
-    for spring, its in zip(own.springs, own.all_rows[own.planets * count :], strict=True):
+    for spring, its in zip(planetary_set.springs, planetary_set.all_rows[planetary_set.planets * count :], strict=True):
         if not spring.pushes:
             yield its[coordinates], 0.0

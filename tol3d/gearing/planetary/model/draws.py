@@ -108,7 +108,7 @@ KINDS: Final = (ToothThicknessSpec, EccentricitySpec, ToothRunOutSpec, ClockingS
 """Tolerances of planetary sets; those of gears are shared with trains."""
 
 
-def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
+def acts_of(scene: Scene, planetary_set: PlanetarySet, name: str, spec: Any) -> Acts:
     """Effect of a tolerance on the set.
 
     Raises:
@@ -119,13 +119,13 @@ def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
         sentence = f"expected of planetary sets {words}, got {kind_of(type(spec))}"
         raise scene.refuse(("tolerances", name, "kind"), sentence)
     if isinstance(spec, PlanetPinSpec | BorePositionSpec):
-        if spec.of != own.carrier:
-            raise scene.refuse(("tolerances", name, "of"), f"expected {own.carrier!r}, got {spec.of!r}")
+        if spec.of != planetary_set.carrier:
+            raise scene.refuse(("tolerances", name, "of"), f"expected {planetary_set.carrier!r}, got {spec.of!r}")
         effects = {"radial": "pin outwards", "tangential": "pin round"}
         return Acts("pin" if isinstance(spec, BorePositionSpec) else effects.get(spec.direction, "pin"))
-    known = [mesh.central.name for mesh in own.meshes] + [gear.name for gear in own.gears]
+    known = [mesh.central.name for mesh in planetary_set.meshes] + [gear.name for gear in planetary_set.gears]
     if spec.of not in known:
-        raise scene.refuse(("tolerances", name, "of"), f"expected a gear of {own.name!r}, got {spec.of!r}")
+        raise scene.refuse(("tolerances", name, "of"), f"expected a gear of {planetary_set.name!r}, got {spec.of!r}")
     if isinstance(spec, ToothThicknessSpec):
         part = scene.parts[spec.of]
         assert isinstance(part, GearSpec)
@@ -135,13 +135,13 @@ def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
     return Acts("clocking" if isinstance(spec, ClockingSpec) else "offset", spec.of)
 
 
-def draw_of(scene: Scene, own: PlanetarySet, acts: Acts, spec: Any) -> Draw:
+def draw_of(scene: Scene, planetary_set: PlanetarySet, acts: Acts, spec: Any) -> Draw:
     """Draw of the components: independent ones for each planet, pin and bore."""
-    planets = numbered("planet", own.planets)
+    planets = numbered("planet", planetary_set.planets)
     if isinstance(spec, BorePositionSpec):  # its axis parallel to the set's
         draw = drawn_by(spec.law, axis_section(spec.zone.diameter.internal), scene.files)
         return EachJudgedZone(draw, planets) if isinstance(draw, Process) else EachZone(draw, planets)
-    of_planets = not acts.gear or acts.gear in {gear.name for gear in own.gears}
+    of_planets = not acts.gear or acts.gear in {gear.name for gear in planetary_set.gears}
     at = getattr(spec, "direction", None)
     direction = at.at.internal if isinstance(at, At) else None
     planar = acts.effect in ("offset", "pin")

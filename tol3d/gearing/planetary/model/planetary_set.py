@@ -95,7 +95,7 @@ class PlanetarySet:
 
     def gear_of(self, mesh: SetMesh) -> int:
         """Gear of a planet that a mesh has."""
-        return [own.name for own in self.gears].index(mesh.planet.name)
+        return [gear.name for gear in self.gears].index(mesh.planet.name)
 
     @cached_property
     def teeth(self) -> ToothSet:
@@ -173,7 +173,7 @@ class PlanetarySet:
             (mesh.planet.teeth * phase - mesh.sense * mesh.central.teeth * self.azimuths[planet]) / (2 * math.pi)
             for mesh in self.meshes
         )
-        return max(abs(own - round(own)) for own in pitches)
+        return max(abs(pitch - round(pitch)) for pitch in pitches)
 
     # the programme --------------------------------------------------------------------------------
 

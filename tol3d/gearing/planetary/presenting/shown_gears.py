@@ -47,9 +47,9 @@ def arms_of(shown: ShownSet) -> Iterator[Body]:
         yield plain_body(PosedBody(arm_name(own, planet), shape, arm_pose(pin, level)), colour)
 
 
-def arm_name(own: PlanetarySet, planet: int) -> str:
+def arm_name(planetary_set: PlanetarySet, planet: int) -> str:
     """Name of the part of the carrier that holds a planet, counted from 0."""
-    return f"{own.carrier} at planet {planet + 1}"
+    return f"{planetary_set.carrier} at planet {planet + 1}"
 
 
 def arm_pose(pin: Array, level: float) -> Array:
@@ -105,23 +105,30 @@ class PlanetaryDisplay(ReducerDisplay):
         return _steps(self.shown, self.seen) if name == TURN else _close_ups(self.shown, self.seen)
 
 
-def _caption(own: PlanetarySet, state: MovedSet, states: Sequence[MovedSet], name: str) -> str:
+def _caption(planetary_set: PlanetarySet, state: MovedSet, states: Sequence[MovedSet], name: str) -> str:
     if name == TURN:
         turns = (
-            math.degrees(shaft_turn(own, state, shaft) - shaft_turn(own, states[0], shaft)) for shaft in _ends(own)
+            math.degrees(shaft_turn(planetary_set, state, shaft) - shaft_turn(planetary_set, states[0], shaft))
+            for shaft in _ends(planetary_set)
         )
-        return ", ".join(f"{shaft} {turn:.2f}°" for shaft, turn in zip(_ends(own), turns, strict=True))
+        return ", ".join(f"{shaft} {turn:.2f}°" for shaft, turn in zip(_ends(planetary_set), turns, strict=True))
     arcmin = math.degrees(state.free) * 60
     if name == SWING:
-        at = math.degrees(shaft_turn(own, state, own.output) - shaft_turn(own, states[0], own.output)) * 60
-        return f"{own.input} held, {own.output} at {at:.2f} of {arcmin:.2f} arcmin"
-    apart = 1000 * state.at[len(own.shafts) + own.planets :]
+        at = (
+            math.degrees(
+                shaft_turn(planetary_set, state, planetary_set.output)
+                - shaft_turn(planetary_set, states[0], planetary_set.output)
+            )
+            * 60
+        )
+        return f"{planetary_set.input} held, {planetary_set.output} at {at:.2f} of {arcmin:.2f} arcmin"
+    apart = 1000 * state.at[len(planetary_set.shafts) + planetary_set.planets :]
     micrometres = " and ".join(f"{each:.1f}" for each in apart)
-    return f"planets displaced by {micrometres} µm, {own.output} free by {arcmin:.2f} arcmin"
+    return f"planets displaced by {micrometres} µm, {planetary_set.output} free by {arcmin:.2f} arcmin"
 
 
-def _ends(own: PlanetarySet) -> tuple[str, str]:
-    return own.input, own.output
+def _ends(planetary_set: PlanetarySet) -> tuple[str, str]:
+    return planetary_set.input, planetary_set.output
 
 
 # from where it is seen ----------------------------------------------------------------------------

@@ -89,16 +89,24 @@ def _torques(name: str, own: PlanetarySetSummary) -> Sequence[PageItem]:
     return [*titled(f"{name}: the spring of its carrier", side_by_side("", torques)), note(f"{given}; {words}")]
 
 
-def _efficiencies(name: str, own: PlanetarySetSummary) -> Sequence[PageItem]:
-    if own.efficiency is None:
+def _efficiencies(name: str, planetary_set_summary: PlanetarySetSummary) -> Sequence[PageItem]:
+    if planetary_set_summary.efficiency is None:
         return ()
-    found = {BALANCE: own.efficiency, FORMULA: own.efficiency_by_formula}
+    found = {BALANCE: planetary_set_summary.efficiency, FORMULA: planetary_set_summary.efficiency_by_formula}
     rows = [
-        (label, EfficiencyRow({own.input: _percent(each.forward_percent), own.output: _percent(each.backward_percent)}))
+        (
+            label,
+            EfficiencyRow(
+                {
+                    planetary_set_summary.input: _percent(each.forward_percent),
+                    planetary_set_summary.output: _percent(each.backward_percent),
+                }
+            ),
+        )
         for label, each in found.items()
         if each is not None
     ]
-    table = declared_table(f"coefficient of friction {own.friction:g}", rows)
+    table = declared_table(f"coefficient of friction {planetary_set_summary.friction:g}", rows)
     return [*titled(f"{name}: efficiency", table), note(NEGLECTED)]
 
 

@@ -97,7 +97,7 @@ class Differences:
 
     @cached_property
     def _wanted_first(self) -> int:
-        measures = [own for own in self.simulation.system.measures if own.name in self.fits]
+        measures = [measure for measure in self.simulation.system.measures if measure.name in self.fits]
         widest = max(_together(self.simulation, measure) for measure in measures)
         return 2 * widest + (FURTHER_SLOW_LOOKS if self.method and self.method.chord_error else FURTHER_LOOKS)
 
@@ -162,11 +162,11 @@ class Differences:
     def explained(self, looks: Looks | None) -> dict[str, Explanation]:
         """Explanation of each measure's difference, from the builds that are made again."""
         simulation, method, system = self.simulation, self.method, self.simulation.system
-        scalars = [own for own in system.measures if own.name in self.fits]
+        scalars = [measure for measure in system.measures if measure.name in self.fits]
         undecided = {
-            own.name: Explanation(undecided=_too_few(simulation, own, self.tally))
-            for own in scalars
-            if self.fits[own.name] is None
+            scalar.name: Explanation(undecided=_too_few(simulation, scalar, self.tally))
+            for scalar in scalars
+            if self.fits[scalar.name] is None
         }
         if looks is None or method is None:
             return undecided
@@ -176,19 +176,19 @@ class Differences:
         bent, by_means = bends(simulation, method, looks.bent, looks.positions), _effects_of_means(system)
         places = {trial: looks.first + k for k, trial in enumerate(looks.worst)}
         return undecided | {
-            own.name: Case(
+            scalar.name: Case(
                 system,
-                own,
+                scalar,
                 fit,
                 look,
                 places.get(max(fit.disagreement.trial, 0)),
                 looks.first,
                 looks.first >= looks.wanted,
-                by_means[own.name],
-                system.chord_bound(own, method.chord_error),
-            ).explained(bent[own.name])
-            for own in scalars
-            if (fit := self.fits[own.name]) is not None
+                by_means[scalar.name],
+                system.chord_bound(scalar, method.chord_error),
+            ).explained(bent[scalar.name])
+            for scalar in scalars
+            if (fit := self.fits[scalar.name]) is not None
         }
 
     def not_looked_at(self, looks: Looks | None) -> Iterator[str]:

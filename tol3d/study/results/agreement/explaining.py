@@ -72,7 +72,7 @@ class Case:
         parts = tuple(self._linear_parts(first_order))
         open_parts = [part.contributor for part in parts if not part.by]
         untold = bool(open_parts) and second is None and not self.whole
-        mean = self._mean(curved, first_order, sum((own[first].mean() for own in bounds.values()), 0.0))
+        mean = self._mean(curved, first_order, sum((bound[first].mean() for bound in bounds.values()), 0.0))
         allowed = math.hypot(self._negligible, _rms(sum(bounds.values(), np.zeros(len(curved)))[first]))
         jumps = self.measure.unit in FACTORS["count"]  # what is near a bound one method counts and the other does not
         known = not jumps and not np.isnan(curved[first]).all()
@@ -189,7 +189,7 @@ class Case:
         return replace(trials, deviations=deviations)
 
     def _contributor(self, name: str) -> Contributor:
-        return next(own for own in self.system.contributors if own.name == name)
+        return next(contributor for contributor in self.system.contributors if contributor.name == name)
 
     def _untold(self, names: Sequence[str]) -> str:
         named = ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
@@ -230,7 +230,7 @@ class Case:
         left = min(abs(float(straight[self.worst])), abs(float(whole[self.worst])))
         regressors = self.look.regressors[self.measure.name][self._regressed.rows, self.worst]
         allowed = mean.allowed + CHORDS_OF_A_LOOK * self.chords + LARGEST_LEFT * self._negligible
-        allowed += sum(float(own[self.worst]) for own in bounds.values())
+        allowed += sum(float(bound[self.worst]) for bound in bounds.values())
         allowed += SHARE * float(np.sum(self.fits.own * self.fits.difference.reaches(regressors)))
         if left > allowed:  # not where it is nan
             yield (

@@ -54,7 +54,7 @@ class MethodFits:
         if difference is None or analytic is None or geometric is None:
             return None
         alone = _effects_at_one_position(simulation.system, measure)
-        sigma = max(*(own.target_sigma for own in methods), math.hypot(*alone.values()))
+        sigma = max(*(method.target_sigma for method in methods), math.hypot(*alone.values()))
         least = np.maximum([alone.get(name, 0.0) for name in regressed.names], LEAST_OWN * sigma)
         own = np.maximum(np.maximum(analytic.effects, geometric.effects), least)
         ends = tally.analytic.moments

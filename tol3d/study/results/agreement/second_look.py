@@ -105,7 +105,7 @@ def _differences(system: System, method: Method, trials: Trials, measures: Seque
     """Differences of builds that seat; of a measure that keeps its overlaps, those of builds that overlap too."""
     analytic = Evaluation(system).of(trials, measures)
     geometric = Evaluation(system, method).of(trials, measures, lambda own: own.keeps_overlap)
-    return {own.name: geometric[own.name] - analytic[own.name] for own in measures}
+    return {measure.name: geometric[measure.name] - analytic[measure.name] for measure in measures}
 
 
 def bends(

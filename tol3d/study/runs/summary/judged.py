@@ -96,4 +96,4 @@ def _verdict(interval: tuple[float, float] | None, accepted_ppm: float) -> Verdi
 def all_ok(run: RunSummary, accepted: Accepted | None = None) -> bool:
     """True if every measure that has limits, or failed trials, is OK."""
     asked = demand_of(run.study.accept_ppk, accepted)
-    return all(JudgedMeasure.of(own, asked).verdict in ("OK", "no limits") for own in run.measures.values())
+    return all(JudgedMeasure.of(measure, asked).verdict in ("OK", "no limits") for measure in run.measures.values())

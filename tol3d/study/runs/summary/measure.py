@@ -261,7 +261,7 @@ class MeasureSummary(Section):
         if len(histogram) and (lower is None or width is None or counts is None):
             raise refused("histogram", "lower_edge, bin_width and counts", ", ".join(sorted(histogram.keys())))
         if counts is not None and width is not None:
-            if len({len(each) for each in counts.values()}) != 1 or not width > 0.0:
+            if len({len(count) for count in counts.values()}) != 1 or not width > 0.0:
                 raise refused("histogram", "as many bars of both methods, wider than 0", "something else")
             if not any(counts.values()):
                 raise refused("histogram.counts", "at least one bar", "none")
