@@ -51,5 +51,6 @@ def _bound(planetary_set: PlanetarySet, deviated: Deviated, shaft: str) -> Itera
             ("moves", planetary_set.name),
             f"the planets bind at the mean build: no turn of planet {planet + 1} fits "
             f"{planetary_set.meshes[place].name} and the meshes that close a loop with it; each of them lacks "
-            f"{1e3 * free.lacking[0]:.3f} um along the line of action. Thin the teeth, or bring pins and clocking nearer their nominal places",
+            f"{1e3 * free.lacking[0]:.3f} um along the line of action. "
+            "Thin the teeth, or bring pins and clocking nearer their nominal places",
         )

@@ -1,7 +1,4 @@
-"""Lengths from one feature to another.
-
-Measures at round features that touch: gap between surfaces, angle of the contact normal.
-"""
+"""Lengths from one feature to another, and at round ones that touch: gap of surfaces, angle of the contact normal."""
 
 from collections.abc import Sequence
 from typing import ClassVar, Literal, Self
@@ -16,6 +13,50 @@ from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 from tol3d.units import Dimension
+
+
+class SurfaceGapSpec(BetweenSpec):
+    """Least gap between two surfaces, one of them round, over the length that both have, at the sizes of the trial.
+
+    Negative if they overlap.
+    """
+
+    reads: ClassVar[Reading] = Reading("surface_gap", f"{PLACING}:surface_gap", f"{TORSORS}:surface_gap")
+
+    kind: Literal["surface_gap"]
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        return ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
+
+
+class ContactAngleSpec(BetweenSpec):
+    """Angle of a contact normal, from the middle or plane of `from` towards that of `to`, 0 to 180°.
+
+    Of parallel cylinders that is at the middle of `to`. It is measured to the normal of a plane or an axis, `against`,
+    or to a direction, `along`; give one of the two.
+    """
+
+    dimension: ClassVar[Dimension] = "angle"
+    reads: ClassVar[Reading] = Reading("contact_angle", f"{PLACING}:contact_angle", f"{TORSORS}:contact_angle")
+
+    kind: Literal["contact_angle"]
+    against: FeatureName | None = Field(default=None, description="a plane or an axis; or a direction `along`")
+    direction: Direction | None = Field(default=None, alias="along", description="in the frame of the part of `from`")
+
+    @property
+    def along(self) -> Direction | None:
+        return self.direction
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        sides = ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
+        return sides if self.against is None else (*sides, (("against",), self.against, ("plane", "cylinder", "axis")))
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if (self.against is None) == (self.direction is None):
+            got = "neither" if self.against is None else "both"
+            raise refused("against", "either a plane or an axis `against`, or a direction `along`", got)
+        return self
 
 
 class DistanceSpec(BetweenSpec):
@@ -75,47 +116,3 @@ class AngleSpec(OverPlaySpec):
     @property
     def along(self) -> Direction | None:
         return self.about
-
-
-class SurfaceGapSpec(BetweenSpec):
-    """Least gap between two surfaces, one of them round, over the length that both have, at the sizes of the trial.
-
-    Negative if they overlap.
-    """
-
-    reads: ClassVar[Reading] = Reading("surface_gap", f"{PLACING}:surface_gap", f"{TORSORS}:surface_gap")
-
-    kind: Literal["surface_gap"]
-
-    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        return ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
-
-
-class ContactAngleSpec(BetweenSpec):
-    """Angle of a contact normal, from the middle or plane of `from` towards that of `to`, 0 to 180°.
-
-    Of parallel cylinders that is at the middle of `to`. It is measured to the normal of a plane or an axis, `against`,
-    or to a direction, `along`; give one of the two.
-    """
-
-    dimension: ClassVar[Dimension] = "angle"
-    reads: ClassVar[Reading] = Reading("contact_angle", f"{PLACING}:contact_angle", f"{TORSORS}:contact_angle")
-
-    kind: Literal["contact_angle"]
-    against: FeatureName | None = Field(default=None, description="a plane or an axis; or a direction `along`")
-    direction: Direction | None = Field(default=None, alias="along", description="in the frame of the part of `from`")
-
-    @property
-    def along(self) -> Direction | None:
-        return self.direction
-
-    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        sides = ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
-        return sides if self.against is None else (*sides, (("against",), self.against, ("plane", "cylinder", "axis")))
-
-    @model_validator(mode="after")
-    def _refuse_contradictions(self) -> Self:
-        if (self.against is None) == (self.direction is None):
-            got = "neither" if self.against is None else "both"
-            raise refused("against", "either a plane or an axis `against`, or a direction `along`", got)
-        return self
