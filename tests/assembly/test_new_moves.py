@@ -172,7 +172,7 @@ def test_no_more_places_tell_kinds_of_moves_by_their_classes() -> None:
     kinds = {own.__name__: own for base in (Move, AssemblyMoveSpec, Placer) for own in kinds_of(base)}
     assert len(kinds) > 30
     found: Counter[str] = Counter()
-    for path in (path for room in ("assembly", "machine") for path in (ROOT / "tol3d" / room).rglob("*.py")):
+    for path in (path for room in ("assembly", "gearing/machine") for path in (ROOT / "tol3d" / room).rglob("*.py")):
         place = path.relative_to(ROOT)
         words = [word for asked in ASKS.findall(path.read_text("utf-8")) for word in re.findall(r"[A-Z]\w+", asked)]
         for word in (word for word in words if word in kinds):
