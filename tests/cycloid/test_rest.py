@@ -179,6 +179,35 @@ def test_loads_balance_the_torque_as_work_says() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_builds_that_differ_in_a_pin_or_a_lobe_rest_where_each_does_by_itself(sense: float) -> None:
+    """Most pins carry nothing and may shrink or grow a little; others then carry, or are those that do."""
+    mean = drawn(1, 0.002, seed=8)
+    play = Play(np.full((), 0.02), np.full((), 0.015), np.array([-1e-5, 1e-5]))
+    changes = [("pin_radii", (0, pin), by) for pin in range(40) for by in (-0.004, 0.004, 0.03)]
+    changes += [("lobe_profile", (0, disc, lobe), 0.004) for disc in range(2) for lobe in range(0, 39, 3)]
+    builds = []
+    for name, place, by in changes:
+        array = getattr(mean, name).copy()
+        array[place] += by
+        builds.append(replace(mean, **{name: array}))
+    every = Deviated(**{name: np.concatenate([getattr(own, name) for own in builds]) for name in mean.__dict__})
+    phi = np.full((1, 1), 3.0)
+    together = STAGE.rests(every, phi, play, sense, 0.003)
+    apart = [STAGE.rests(own, phi, play, sense, 0.003) for own in builds]
+    assert (together.status == OK).all()
+    turns = np.array([own.turns[0, 0] for own in apart])
+    np.testing.assert_allclose(together.turns[:, 0], turns, rtol=0, atol=1e-12)  # 1e-10 mm over 85 mm
+    np.testing.assert_allclose(together.loads[:, 0], [own.loads[0, 0] for own in apart], rtol=0, atol=1e-8)
+    np.testing.assert_array_equal(together.near[:, 0], [own.near[0, 0] for own in apart])
+    at_mean = STAGE.rests(mean, phi, play, sense).turns[0, 0]
+    moved = np.abs(turns - at_mean) > 1e-9
+    assert 10 < moved.sum() < len(moved) / 2
+    # most take over the rest of the one before them: its very bits
+    assert (np.diff(together.turns[:, 0]) == 0.0).sum() > len(moved) / 3
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "trial"), [(10, 3213), (11, 6346), (12, 5892), (12, 8677), (12, 9565), (17, 3041)])
 def test_a_pin_that_rests_on_the_bend_of_a_hollow_flank_is_no_stall(seed: int, trial: int) -> None:
     """Bodies went to and fro there by 9 um, and the carrier by 0.2 arc seconds, for as many steps as one likes."""

@@ -65,19 +65,20 @@ class RestStage(ContactStage):
             np.empty((trials, positions), dtype=np.int64),
             np.empty((trials, positions), dtype=np.int8),
         )
+        phis = np.broadcast_to(phis, (trials, positions))
+        free = np.broadcast_to(play.crank, (trials, positions, self.cranks, 2))
+        leans = np.zeros((trials, self.discs, 3)) if leans is None else leans
+        bodies = made.linkage, joined.holes, joined.thrown, joined.bored
         given = (
-            *(made.linkage, joined.holes, joined.thrown, joined.bored, made.pins, made.pin_radii),
-            *(made.lobe_pitch, made.lobe_profile),
-            np.zeros((trials, self.discs, 3)) if leans is None else leans,
-            radial,
-            np.broadcast_to(play.crank, (trials, positions, self.cranks, 2)),
-            np.array(play.leaving),
-            np.broadcast_to(phis, (trials, positions)),
+            *(*bodies, made.pins, made.pin_radii, made.lobe_pitch, made.lobe_profile),
+            *(leans, radial, free, np.array(play.leaving), phis),
         )
+        like = as_before(phis[..., None], free) & as_before(*(own[:, None] for own in (*bodies, leans, radial)))
         rests(
             contact_shape(self.profile, self.window, self.rolling, NONE_COUNTED if deflection is None else deflection),
             self.throws,
             *(np.require(each, dtype=np.float64, requirements=["C", "W"]) for each in given),
+            like,
             sense,
             found.turns,
             found.loads,
@@ -86,3 +87,11 @@ class RestStage(ContactStage):
             *work_arrays(self.discs, self.cranks, self.profile.pins),
         )
         return found
+
+
+def as_before(*given: Array) -> NDArray[np.bool_]:
+    """True where trials (trials, positions, ...) have the numbers of the one before them (trials, positions)."""
+    same = [(own[1:] == own[:-1]).all(axis=tuple(range(2, own.ndim))) for own in given]
+    found = np.zeros(given[0].shape[:2], dtype=np.bool_)
+    found[1:] = np.logical_and.reduce(same)
+    return found

@@ -9,6 +9,9 @@ tangent there, so that the circle is met to 1e-10 mm. Tangents at pins that over
 flank rests on its bend: with the last tangent alone bodies may go to and fro for ever. From the third programme on the
 contacts that carry are met by Newton's method, see rest_balance.py; where these are not yet the right ones the
 programmes go on. The multiplier of a gap is the force on it per torque.
+
+Builds in a row that differ in pins and lobes alone, such as those that look at one after the other, rest alike as long
+as those that carry are the same and nothing else overlaps there: such a rest is not looked for again.
 """
 
 from typing import Any, Final
@@ -29,7 +32,7 @@ from tol3d.gearing.cycloid.exact.rest_rows import (
 )
 from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import fill
+from tol3d.numerics.loops import copy, fill
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED, new_rooms, solve_lp
 
 NOT_HELD: Final = 3
@@ -204,19 +207,36 @@ def note(pinned: int, working: Any, basis: Any, multipliers: Any, bends: Any, lo
             loads[working[row - pinned]] += abs(multipliers[k]) / ARM
 
 
+@nested
+def rests_alike(pinned: int, working: Any, loads: Any, rows: Any, lower: Any, known: Any) -> bool:
+    """True if the pins that carry, by their loads, have the gaps and slopes that are known, and no other overlaps."""
+    slopes, gaps = known
+    for k in range(working.shape[0]):
+        row = pinned + k
+        if lower[row] > MET:
+            return False
+        if loads[working[k]] > 0.0:
+            if lower[row] != gaps[k]:
+                return False
+            for j in range(slopes.shape[1]):
+                if rows[row, j] != slopes[k, j]:
+                    return False
+    return True
+
+
 @kernel(
     ContactShape,
     arrays="f8[::1], f8[:,:,::1], f8[:,:,::1], f8[:,:,:,::1], f8[:,:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,:,::1], "
-    "f8[:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,:,:,::1], f8[::1], f8[:,::1], f8, f8[:,::1], f8[:,:,::1], i8[:,::1], "
-    "i1[:,::1], f8[:,::1], f8[::1], f8[::1], i8[::1], f8[::1], f8[::1], f8[:,::1], f8[:,::1], f8[:,::1], i8[::1], "
-    "f8[:,::1], f8[:,::1], f8[:,::1], i8[::1]",
+    "f8[:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,:,:,::1], f8[::1], f8[:,::1], b1[:,::1], f8, f8[:,::1], f8[:,:,::1], "
+    "i8[:,::1], i1[:,::1], f8[:,::1], f8[::1], f8[::1], i8[::1], f8[::1], f8[::1], f8[:,::1], f8[:,::1], f8[:,::1], "
+    "i8[::1], f8[:,::1], f8[:,::1], f8[:,::1], i8[::1], f8[:,::1], f8[::1]",
 )
 def rests(
     shape: Any, throws: Any, linkage: Any, holes: Any, thrown: Any, bored: Any, places: Any, radii: Any,
-    lobe_pitch: Any, lobe_profile: Any, leans: Any, radial: Any, free: Any, leaving: Any, phis: Any, sense: float,
-    turns: Any, loads: Any, near: Any, status: Any,
+    lobe_pitch: Any, lobe_profile: Any, leans: Any, radial: Any, free: Any, leaving: Any, phis: Any, like: Any,
+    sense: float, turns: Any, loads: Any, near: Any, status: Any,
     rows: Any, lower: Any, upper: Any, basis: Any, x: Any, z: Any, planes: Any, across: Any, bends: Any, working: Any,
-    poses: Any, axes: Any, system: Any, roles: Any,
+    poses: Any, axes: Any, system: Any, roles: Any, slopes: Any, gaps: Any,
 ) -> None:  # fmt: skip
     """Rests of trials at crank angles.
 
@@ -230,41 +250,56 @@ def rests(
         free: least and most turn of each crank by its planet (trials, positions, cranks, 2) [rad].
         leaving: what that turn is for a planet that lies off by 1 mm across the line of centres, and along it (2,)
             [rad/mm].
+        like: whether a trial differs from the one before it in pins and lobes alone (trials, positions).
         sense: +1 or -1.
         turns: the carrier's beyond -phi / Zc (trials, positions) [rad]; written.
         loads: on pins per torque (trials, positions, discs pins) [1/mm]; written.
         near: working pins whose gap is at most the shape's deflection then (trials, positions); written.
         status: of the positions; written.
-        rows: zeros, to write in, as are lower, upper, basis, x, z, planes, across, bends, working, poses, axes: see
-            `work_arrays`.
+        rows: zeros, to write in, as are lower, upper, basis, x, z, planes, across, bends, working, poses, axes,
+            system, roles, slopes, gaps: see `work_arrays`.
     """
     discs, cranks, count = throws.shape[0], holes.shape[1], z.shape[0]
     pinned = count + 2 * cranks
     solving = new_rooms(count)
     rooms = (rows, lower, upper, basis, solving, x, z, planes, across, bends, system, roles)
     base = (poses, axes)
-    for i in range(phis.shape[0]):
-        made = (holes[i], thrown[i], bored[i])
-        pins = (places[i], radii[i], lobe_pitch[i], lobe_profile[i], leans[i])
-        for p in range(phis.shape[1]):
+    for p in range(phis.shape[1]):
+        last = -1  # the trial whose rest is in z, if this one is like it
+        for i in range(phis.shape[0]):
+            made = (holes[i], thrown[i], bored[i])
+            pins = (places[i], radii[i], lobe_pitch[i], lobe_profile[i], leans[i])
             stage = (discs, cranks, shape.rolling, phis[i, p], -phis[i, p] / shape.lobes)
             based(stage, linkage[i], made, base[0], base[1])
             number = working_pins(shape, throws, phis[i, p], sense, working)
-            for k in range(count):
-                fill(rows[k], 0.0)
-                rows[k, k] = 1.0
-            for k in range(number):
-                upper[pinned + k] = ROOM * ARM
-            status[i, p], turns[i, p] = rested(
-                shape, stage, throws, made, base, pins, (radial[i], (free[i, p], leaving[0], leaving[1])),
-                working[:number], sense, rooms,
-            )  # fmt: skip
+            if not like[i, p]:
+                last = -1
+            if last >= 0:
+                pins_written(shape, stage, throws, pins, base, z, working[:number], rows, lower, pinned)
+            if last >= 0 and rests_alike(pinned, working[:number], loads[last, p], rows, lower, (slopes, gaps)):
+                status[i, p], turns[i, p] = OK, turns[last, p]
+                copy(loads[i, p], loads[last, p])
+            else:
+                for k in range(count):
+                    fill(rows[k], 0.0)
+                    rows[k, k] = 1.0
+                for k in range(number):
+                    upper[pinned + k] = ROOM * ARM
+                status[i, p], turns[i, p] = rested(
+                    shape, stage, throws, made, base, pins, (radial[i], (free[i, p], leaving[0], leaving[1])),
+                    working[:number], sense, rooms,
+                )  # fmt: skip
+                fill(loads[i, p], 0.0)
+                last = -1
+                if status[i, p] == OK:
+                    note(pinned, working[:number], basis, solving[3][0], bends, loads[i, p])
+                    last = i
             near[i, p] = 0
-            fill(loads[i, p], 0.0)
             if status[i, p] == OK:
-                note(pinned, working[:number], basis, solving[3][0], bends, loads[i, p])
                 for k in range(number):
                     near[i, p] += -lower[pinned + k] <= shape.deflection
+            if last == i and i + 1 < phis.shape[0] and like[i + 1, p]:
+                pins_written(shape, stage, throws, pins, base, z, working[:number], slopes, gaps, 0)
 
 
 def work_arrays(discs: int, cranks: int, pins: int) -> tuple[Array | Places, ...]:
@@ -278,4 +313,5 @@ def work_arrays(discs: int, cranks: int, pins: int) -> tuple[Array | Places, ...
         *(np.empty(discs * pins, np.int64), np.empty((discs, 4)), np.empty((cranks, 2))),
         np.empty((2 * count + 2, max(2 * count + 1, bearings))),
         np.empty(bearings + 2 * cranks + discs * pins, np.int64),
+        *(np.empty((discs * pins, count)), np.empty(discs * pins)),
     )
