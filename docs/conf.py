@@ -44,7 +44,7 @@ html_copy_source = False
 html_use_index = False  # the search finds names, too
 html_domain_indices = False
 
-MADE = DOCS / "reference"  # pages that git ignores
+MADE = DOCS / "reference"  # pages that git ignores are in its folder tree
 LINK = re.compile(r"\]\(\.\./([^)#]+)(#[^)]*)?\)")
 LANGUAGES = {".yaml": "yaml", ".py": "python", ".toml": "toml"}
 NOTEBOOK = "---\nfile_format: mystnb\nkernelspec: {name: python3, display_name: Python 3}\n---\n"

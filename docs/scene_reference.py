@@ -1,10 +1,11 @@
 """Scene reference: pages of every kind that scenes may have, from the JSON Schema that `tol3d schema` prints.
 
 A kind that a mechanism registers has its fields, units, defaults, values and an example here without further work.
+`python docs/scene_reference.py` writes the pages, docs/reference/*.md, after a change of the grammar or of an example.
 """
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 
 import yaml
 
+from tol3d.kinds import all_kinds
 from tol3d.scene import Grammar
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.scene.schema import SECTIONS
@@ -23,9 +25,12 @@ DEFINITIONS = "#/$defs/"
 COMMON, FIGURES = "scene_file", "published_figures"
 ROOT = "Scene"
 TITLES = {COMMON: "The scene file", FIGURES: "Published figures"}
+SHARED = "Fields that most of these kinds have:"
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 LINE = 110  # characters of an example
 FEW, TALL = 5, 6  # examples that are compared, and the lines that one should have
+SHARING = 3  # kinds of a section, at least, whose common field is explained once for all of them
+HEAD = "| field | values | default | meaning |\n|---|---|---|---|"
 
 
 class UndescribedError(ValueError):
@@ -138,13 +143,46 @@ class Reference:
             yield "\n## Kinds of entry\n\n| section | of | kinds |\n|---|---|---|"
             yield from (f"| {' | '.join(cells)} |" for cells in self._kinds())
             yield ""
+        shared: Mapping[str, str] = {}
+        for name, heading in self._headings(page, names):
+            yield f"{heading}\n"
+            if name:
+                yield from self._entry(name, shared if name in self._sections else {})
+            elif shared := self._shared([each for each in names if self._group(page, each) == _words_of(heading)]):
+                yield f"{SHARED}\n\n{HEAD}"
+                yield from (*shared.values(), "")
+
+    def _headings(self, page: str, names: list[str]) -> Iterator[tuple[str, str]]:
+        """Headings below a page's title, each with the definition that it is of, or with none where it is a group's."""
         section = None
         for name in names:
-            own = self._sections.get(name, self._laws.get(name, "fields of these" if page not in TITLES else None))
+            own = self._group(page, name)
             if own != section and own:
-                yield f"## {own.capitalize()}\n"
+                yield "", f"## {own.capitalize()}"
             section = own
-            yield from self._entry(name, "###" if section else "##")
+            yield name, f"{'###' if section else '##'} {self._title(name)}"
+
+    def _group(self, page: str, name: str) -> str | None:
+        """The group of a definition on its page: a section, the laws, or what those refer to."""
+        return self._sections.get(name, self._laws.get(name, "fields of these" if page not in TITLES else None))
+
+    def _shared(self, names: list[str]) -> Mapping[str, str]:
+        """Rows that at least half of a section's kinds have alike, by their fields."""
+        if not {*names} <= self._sections.keys():
+            return {}
+        rows = Counter(row for name in names for row in self._rows(name).items())
+        return {field: row for (field, row), count in rows.items() if count >= max(SHARING, len(names) / 2)}
+
+    def _rows(self, name: str) -> Mapping[str, str]:
+        """The row of each field of a definition, but of the word by which it is chosen."""
+        definition = self._definitions[name]
+        fields = {key: node for key, node in definition.get("properties", {}).items() if not _is_word(key, node)}
+        rows: dict[str, str] = {}
+        for key, node in fields.items():
+            default = "required" if key in definition.get("required", ()) else _default(node.get("default"))
+            cells = (f"`{key}`", self._values(node), default, node["description"])
+            rows[key] = f"| {' | '.join(' '.join(cell.split()).replace('|', '&#124;') for cell in cells)} |"
+        return rows
 
     def _kinds(self) -> Iterator[tuple[str, str, str]]:
         """Every kind: section, mechanism, links."""
@@ -153,18 +191,14 @@ class Reference:
                 if links := [self._link(self._name(section, word)) for word in self._words(each.name, section)]:
                     yield section, f"[{each.name}]({each.name}.md)", ", ".join(links)
 
-    def _entry(self, name: str, level: str) -> Iterator[str]:
+    def _entry(self, name: str, shared: Mapping[str, str]) -> Iterator[str]:
         definition = self._definitions[name]
-        yield f"(ref-{name})=\n{level} {self._title(name)}\n"
         yield re.sub(r"(?<!`)\b[A-Z]\w+Spec\b", lambda own: _said(own[0]), definition.get("description", "")) + "\n"
-        fields = {key: node for key, node in definition.get("properties", {}).items() if not _is_word(key, node)}
-        if fields:
-            yield "| field | values | default | meaning |\n|---|---|---|---|"
-            needed = definition.get("required", ())
-            for key, node in fields.items():
-                default = "required" if key in needed else _default(node.get("default"))
-                cells = (f"`{key}`", self._values(node), default, node["description"])
-                yield f"| {' | '.join(' '.join(cell.split()).replace('|', '&#124;') for cell in cells)} |"
+        rows = self._rows(name)
+        if own := [row for field, row in rows.items() if shared.get(field) != row]:
+            yield from (HEAD, *own)
+        if also := [f"`{field}`" for field, row in rows.items() if shared.get(field) == row]:
+            yield f"\nAlso, as above: {', '.join(also)}."
         if "enum" in definition:
             yield f"One of {self._values(definition)}."
         if example := self._examples.get(name):
@@ -176,7 +210,19 @@ class Reference:
         return f"`{word}`" if word else _said(self._definitions[name].get("title", name)).capitalize()
 
     def _link(self, name: str) -> str:
-        return f"[{self._title(name)}](#ref-{name})"
+        return f"[{self._title(name)}]({self._anchors[name]})"
+
+    @cached_property
+    def _anchors(self) -> Mapping[str, str]:
+        """Page and anchor of each definition, as file views and the site make them of headings."""
+        found: dict[str, str] = {}
+        for page, names in self._contents.items():
+            met = Counter[str]()
+            for name, heading in self._headings(page, names):
+                anchor = _words_of(heading).replace(" ", "-")
+                found[name] = f"{page}.md#{anchor}" + (f"-{met[anchor]}" if met[anchor] else "")
+                met[anchor] += 1
+        return found
 
     def _values(self, node: Node) -> str:
         """The values that a node allows, in words."""
@@ -185,9 +231,9 @@ class Reference:
         for key in ("oneOf", "anyOf"):
             if key in node:
                 if len(kinds := [name for name in _targets(node) if name in self._sections]) > 1:
-                    return f"one of {len(kinds)} [kinds](#kinds-of-entry)"
+                    return f"one of {len(kinds)} [kinds]({COMMON}.md#kinds-of-entry)"
                 if {"NormalSpec", "UniformSpec"} <= set(_targets(node)):
-                    return f"a [distribution](#ref-{_targets(node)[0]})"
+                    return f"a [distribution]({COMMON}.md#distributions)"
                 words = [self._values(each) for each in node[key] if each.get("type") != "null"]
                 return " or ".join(dict.fromkeys(words))
         if "const" in node or "enum" in node:
@@ -275,6 +321,11 @@ def _said(name: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name.rpartition("__")[2].removesuffix("Spec")).lower()
 
 
+def _words_of(heading: str) -> str:
+    """A heading in small letters, without its marks."""
+    return re.sub(r"[#`]", "", heading).strip().lower()
+
+
 def _default(value: Any) -> str:
     return "–" if value in (None, "", [], {}) else f"`{str(value).lower() if isinstance(value, bool) else value}`"
 
@@ -298,3 +349,8 @@ def reference_pages(grammar: Grammar, pages: Path) -> dict[str, str]:
             r"^```(?:yaml|text)\n((?:\w+:|#).*?)^```", page.read_text("utf-8"), re.MULTILINE | re.DOTALL
         )
     return Reference(grammar, texts).pages()
+
+
+if __name__ == "__main__":
+    for name, text in reference_pages(all_kinds(), Path(__file__).parent).items():
+        (Path(__file__).parent / "reference" / f"{name}.md").write_text(text, "utf-8")

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 import pytest
-from kinds_page import words
+from guides import words
 from places import ROOT, SCENES
 
 from tol3d import load_scene, run_scene

@@ -1,58 +1,33 @@
-"""docs/assemblies.md against the JSON schema and the scenes that it quotes, which say every field once at least."""
+"""Examples of docs/assemblies.md and its neighbours; the scenes that between them say every field of assemblies."""
 
 import re
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import pytest
 from fixtures import Command
-from kinds_page import words
-from mechanism_pages import ASSEMBLIES, written
-from places import ROOT, SCENES
+from guides import quoted, text_of
+from places import SCENES
 from ruamel.yaml import YAML
 from said_fields import fields_said, fields_within, unsaid
 
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.assembly.grammar.builders import OwnFileSpec
-from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.moves.play import PatternPairSpec
 from tol3d.assembly.grammar.parts import SolidSpec, StepSpec
-from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.assembly.mechanism import ASSEMBLY
-from tol3d.assembly.model.datum_frame import Simulator
-from tol3d.assembly.model.statuses import WITH_CLEARANCES
 from tol3d.assembly.zones import catalogue, normal_in, uniform_in
 from tol3d.scene import Grammar, Scene
 from tol3d.scene.schema import SECTIONS
-from tol3d.units import FACTORS
 
-PAGE = ASSEMBLIES.kinds
-DOCS, SCHEMA = PAGE.text, PAGE.schema
 KINDS = Grammar((ASSEMBLY,))
-WORDS = "Definitions"
 OWN = ("tol3d.assembly", "tol3d.scene.temperature")  # modules of its kinds
-TABLES = re.findall(r"```text\n([^\n]*analytic.*?)```", DOCS, re.DOTALL)
+TABLES = re.findall(r"```text\n([^\n]*analytic.*?)```", text_of("assemblies"), re.DOTALL)
 
 
 def one_line(text: str) -> str:
     return " ".join(text.split())
-
-
-def union(definition: str, field: str) -> Mapping[str, Any]:
-    """Kinds that a field of a definition may hold, by their words."""
-    found: dict[str, Any] = {}
-    pending: list[Any] = [SCHEMA["$defs"][definition]["properties"][field]]
-    while pending:
-        node = pending.pop()
-        if isinstance(node, dict):
-            if "discriminator" in node:
-                found |= PAGE.mapping(node)
-            pending += [own for name, own in node.items() if name != "discriminator"]
-        elif isinstance(node, list):
-            pending += node
-    return found
 
 
 FIELD_SCENES = (
@@ -70,27 +45,25 @@ FIELD_SCENES = (
 """Between them every kind and every field, but for the builders of linkages."""
 LINKAGES = ("spherical_drive", "stewart")
 
-BUILDERS_PAGE = (ROOT / "docs" / "builders.md").read_text("utf-8")
+BUILDERS_PAGE = text_of("builders")
 OWN_PROGRAM, OWN_LINES = (
     re.findall(rf"```{language}\n({start}.*?)```", BUILDERS_PAGE, re.DOTALL)[0]
     for language, start in (("python", "import"), ("yaml", "builder:"))
 )
 PAIRS = [
     PatternPairSpec.model_validate(YAML(typ="safe").load(pair))
-    for pair in re.findall(r"`(\{from: cover\.hole .*\})`", DOCS)
+    for pair in re.findall(r"`(\{from: cover\.hole .*\})`", text_of("moves"))
 ]
 OWN_BUILDER = OwnFileSpec.model_validate(YAML(typ="safe").load(OWN_LINES)["builder"])
 
-STEP_PAGE = (ROOT / "docs" / "step.md").read_text("utf-8")
+STEP_PAGE = text_of("step")
 STEP_PARTS = [
     StepSpec.model_validate(own)
     for lines in re.findall(r"```yaml\n(parts:\n.*?)```", STEP_PAGE, re.DOTALL)
     for own in YAML(typ="safe").load(lines)["parts"].values()
 ]
 
-DRAWINGS = re.findall(r"```yaml\n(scene:.*?)```", (ROOT / "docs" / "drawings.md").read_text("utf-8"), re.DOTALL)
-
-FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
+DRAWINGS = [text for text in quoted("drawings") if text.startswith("scene:")]
 
 
 def drawn(text: str, folder: Path) -> Scene:
@@ -102,9 +75,8 @@ def drawn(text: str, folder: Path) -> Scene:
 # the scenes --------------------------------------------------------------------------------------------------
 
 
-def test_the_page_quotes_both_scenes() -> None:
-    names = ("cover_on_base", "every_assembly_field")
-    assert [(SCENES / f"{name}.yaml").read_text("utf-8") for name in names] == ASSEMBLIES.quoted
+def test_the_page_quotes_its_scene() -> None:
+    assert quoted("assemblies") == [(SCENES / "cover_on_base.yaml").read_text("utf-8")]
 
 
 def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path: Any) -> None:
@@ -161,50 +133,6 @@ def test_the_program_of_the_page_builds_what_it_says(tmp_path: Path) -> None:
     assert features["rib"].origin == pytest.approx((0.0, 0.0, 30.0), abs=1e-9)  # 20 mm and a rib of 10 mm
 
 
-# the tables --------------------------------------------------------------------------------------------------
-
-
-def test_the_table_of_features_names_their_fields() -> None:
-    rows = dict(PAGE.table("Features").rows)
-    assert set(rows) == set(FEATURES)
-    for kind, own in FEATURES.items():
-        assert words(" ".join(rows[kind])) == set(own["properties"]) - {"kind"}
-
-
-@pytest.mark.parametrize(
-    ("head", "expected"),
-    [("simulator", get_args(Simulator)), ("law", tuple(LAWS)), ("status", WITH_CLEARANCES.texts)],
-    ids=lambda own: own if isinstance(own, str) else "",
-)
-def test_small_tables_have_every_value(head: str, expected: tuple[str, ...]) -> None:
-    rows = [row.split("` (")[0] for row, _ in PAGE.table(WORDS, head).rows]
-    assert sorted(word for row in rows for word in row.split("`, `")) == sorted(expected)
-
-
-def test_the_table_of_measures_is_that_of_their_classes() -> None:
-    """`python tests/mechanism_pages.py` writes it anew."""
-    assert written(DOCS) == DOCS
-
-
-def test_the_table_of_relations_has_every_kind() -> None:
-    spec = SCHEMA["$defs"]["RelationSpec"]["properties"]["kind"]["enum"]
-    assert {row for row, _ in PAGE.table("Moves", "relation").rows} == set(spec)
-
-
-@pytest.mark.parametrize("model", [ZoneSpec, DatumSpec])
-def test_the_paragraph_below_the_tolerances_names_what_is_in_a_zone_and_a_datum(model: type[ZoneSpec]) -> None:
-    paragraph = next(each for each in DOCS.split("\n\n") if each.startswith("A `zone` has"))
-    fields = {"feature" if field == "features" else field for field in model.model_fields}
-    assert fields <= words(paragraph)
-
-
-def test_no_table_is_forgotten() -> None:
-    known = {(section.capitalize(), "kind") for section in SECTIONS} | {("Features", "kind")}
-    known |= {("Moves", head) for head in ("relation", "contact")}
-    known |= {(WORDS, head) for head in ("simulator", "law", "sigma of the middle / t", "status")}
-    assert {(each.section, each.head[0]) for each in PAGE.tables} == known
-
-
 def test_the_table_of_sigmas_has_those_of_the_draws() -> None:
     """In parts of the zone's width; `uniform` where the orientation is free, and the most where it is refined."""
     free = {
@@ -218,18 +146,9 @@ def test_the_table_of_sigmas_has_those_of_the_draws() -> None:
     refined = {"axis in a cylinder": catalogue.axis(1.0, 1e-6), "face": catalogue.rectangle(1.0, 1e-6)}
     refined["axis between planes"] = catalogue.flat_axis(1.0, (1.0, 0.0), 1e-6)
     for name, zone in free.items():
-        (row,) = re.findall(rf"^\| {name}[^|]* \| ([\d.]+)([^|]*) \| ([\d.]+) \|", DOCS, re.MULTILINE)
+        (row,) = re.findall(rf"^\| {name}[^|]* \| ([\d.]+)([^|]*) \| ([\d.]+) \|", text_of("assemblies"), re.MULTILINE)
         assert row[0] == f"{uniform_in(zone).middle_sigma:.3f}"
         assert row[2] == f"{normal_in(zone).middle_sigma:.3f}"
         assert re.findall(r"([\d.]+) at most", row[1]) == [
             f"{uniform_in(refined[own]).middle_sigma:.3f}" for own in refined if own == name
         ]
-
-
-def test_every_word_of_the_page_that_looks_like_a_field_is_one() -> None:
-    known = {*PAGE.vocabulary(SCHEMA), *SECTIONS, "study", "published", "feature", "kind"}
-    known |= {kind for section in SECTIONS for kind in PAGE.kinds(section)} | set(FEATURES) | set(LAWS)
-    known |= {unit for units in FACTORS.values() for unit in units}
-    known |= {"gauge", "ok", "singular", "overlap", "study", "witness", "exact", "analytic", "engine", "view", "export"}
-    known |= {"law_sigmas_um"}  # a key of summary.json
-    assert words(PAGE.prose) - known == set()

@@ -1,12 +1,10 @@
 """The README is short, and shows what runs."""
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from fixtures import Command
 from places import ROOT
 
 from tol3d import load_scene, open_run, run_scene
@@ -62,31 +60,18 @@ def differs(shown: str, printed: str) -> bool:
     return False
 
 
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of the run of README's first command."""
-    return tmp_path_factory.mktemp("runs") / "run"
-
-
-@pytest.fixture(scope="module")
-def first_command(kept: Path) -> list[str]:
-    """Output of README's first command, line by line, at the width of its block."""
+@pytest.fixture
+def first_command(tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Output of README's first command, line by line, at the width of its block; its run is tmp_path / "run"."""
     command = re.search(r"\.venv/bin/tol3d (run scenes/\S+)\n", README)
     assert command is not None
-    arguments = [*command[1].split(), "--out", str(kept), "--no-picture"]
-    done = subprocess.run(
-        [sys.executable, "-m", "tol3d.cli", *arguments],
-        cwd=ROOT,
-        env=os.environ | {"COLUMNS": str(WIDTH), "PYTHONUTF8": "1"},
-        capture_output=True,
-        encoding="utf-8",
-        check=True,
-        timeout=600,  # s; a guard against hanging, not a claim
-    )
-    return [line.rstrip() for line in done.stdout.splitlines()]
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setenv("COLUMNS", str(WIDTH))
+    code, out, _ = tol3d(*command[1].split(), "--out", str(tmp_path / "run"), "--no-picture")
+    assert code == 0
+    return [line.rstrip() for line in out.splitlines()]
 
 
-@pytest.mark.slow
 def test_the_block_it_shows_is_what_its_first_command_prints(first_command: list[str]) -> None:
     """Line by line, in their order; the README may leave out lines. What is told of time and place is not shown there.
 
@@ -106,9 +91,9 @@ def test_its_first_screen_has_the_verdict_first_and_thirty_lines(first_command: 
 
 
 @pytest.mark.usefixtures("first_command")
-def test_the_manual_explains_every_row_and_column_of_the_first_table(kept: Path) -> None:
+def test_the_manual_explains_every_row_and_column_of_the_first_table(tmp_path: Path) -> None:
     """Labels of the rows and of our own columns, as -v prints them; no label that is not."""
-    printed = as_text(run_report(open_run(kept).found), 120).splitlines()
+    printed = as_text(run_report(open_run(tmp_path / "run").found), 120).splitlines()
     manual = (ROOT / "docs" / "manual.md").read_text("utf-8")
     explained = {
         head: set(re.findall(r"`([^`]+)`", "".join(re.findall(r"^\| (`[^|]*) \|", table, re.MULTILINE))))

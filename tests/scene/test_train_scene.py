@@ -6,8 +6,8 @@ from pathlib import Path
 
 import jsonschema
 import pytest
+from guides import quoted, text_of
 from of_kind import of_kind
-from places import ROOT
 from scene_schema import judged
 
 from tol3d import Scene, load_scene
@@ -19,8 +19,7 @@ from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceS
 from tol3d.kinds import all_kinds
 from tol3d.scene.entry import any_of
 
-DOCUMENT = (ROOT / "docs" / "scene.md").read_text(encoding="utf-8")
-SHOULDER = re.findall(r"```yaml\n(.*?)```", DOCUMENT, re.DOTALL)[2]
+(SHOULDER,) = quoted("trains")
 
 LENGTH = 'expected a length with its unit, such as "4.5 um", got'
 SHAFT = "expected the name of a shaft, or of a gear that none carries, got"
@@ -386,7 +385,7 @@ def test_an_arm_without_points_is_refused(tmp_path: Path) -> None:
 def test_the_documents_message_of_a_train_is_what_the_tool_says(tmp_path: Path) -> None:
     with pytest.raises(SceneError) as caught:
         load(tmp_path, changed(("    shaft: spline shaft           # a shaft", "    shaft: wheel # a shaft")))
-    assert str(caught.value).replace(f"{tmp_path}/", "") in DOCUMENT
+    assert str(caught.value).replace(f"{tmp_path}/", "") in text_of("trains")
 
 
 @pytest.mark.parametrize(

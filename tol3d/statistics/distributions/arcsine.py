@@ -61,7 +61,7 @@ class Arcsine(Distribution):
 
 
 class ArcsineSpec(DistributionSpec):
-    """`{lower, upper}`."""
+    """`{lower, upper}`: a sine between them at a random phase, such as a periodic error. Worst cases: both."""
 
     kind: Literal["arcsine"]
     lower: Quantity = Field(description="smallest deviation")

@@ -60,7 +60,7 @@ class Constant(Distribution):
 
 
 class ConstantSpec(DistributionSpec):
-    """`{value}`."""
+    """`{value}`: the same in every trial."""
 
     kind: Literal["constant"]
     value: Quantity = Field(description="the deviation of every build")

@@ -71,7 +71,10 @@ class Normal(Distribution):
 
 
 class NormalSpec(DistributionSpec):
-    """`{lower, upper, sigmas}`: limits at +-sigmas about their middle; or `{mean, sigma}`."""
+    """`{lower, upper, sigmas}`: limits at +-sigmas about their middle, which draws exceed; or `{mean, sigma}`.
+
+    Worst cases: the limits, or the mean +-3 sigma.
+    """
 
     kind: Literal["normal"]
     lower: Quantity | None = Field(default=None, description="lower limit")

@@ -59,7 +59,7 @@ class Triangular(Distribution):
 
 
 class TriangularSpec(DistributionSpec):
-    """`{lower, mode, upper}`; the mode may lie at a limit."""
+    """`{lower, mode, upper}`; the mode may lie at a limit. Worst cases: the limits."""
 
     kind: Literal["triangular"]
     lower: Quantity = Field(description="smallest deviation")

@@ -81,7 +81,10 @@ class TruncatedNormal(Distribution):
 
 
 class TruncatedNormalSpec(DistributionSpec):
-    """`{mean, sigma, lower, upper}`: mean and sigma are those of the normal before it is cut."""
+    """`{mean, sigma, lower, upper}`: mean and sigma are those of the normal before it is cut.
+
+    Nothing is beyond the limits, which are the worst cases.
+    """
 
     kind: Literal["truncated_normal"]
     mean: Quantity = Field(description="mean before it is cut")

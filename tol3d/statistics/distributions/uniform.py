@@ -48,7 +48,7 @@ class Uniform(Distribution):
 
 
 class UniformSpec(DistributionSpec):
-    """`{lower, upper}`."""
+    """`{lower, upper}`: equally likely everywhere between them. Worst cases: both."""
 
     kind: Literal["uniform"]
     lower: Quantity = Field(description="smallest deviation")

@@ -41,7 +41,9 @@ class PlaneSpec(OneFaceSpec):
         default=None, description="along x and y of the face"
     )
     radius: Length | None = Field(default=None, description="of a round face")
-    along: Direction | None = Field(default=None, description="x of the face; default: the part's x (or y)")
+    along: Direction | None = Field(
+        default=None, description="x of the face; default: the part's x, or its y if the normal is x"
+    )
 
     @property
     def shape(self) -> Plane | RoundPlane:

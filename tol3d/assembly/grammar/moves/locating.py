@@ -30,7 +30,10 @@ from tol3d.strict import Strict
 
 
 class ContactSpec(PairSpec):
-    """A point on a plane."""
+    """A point on a plane, tilted as in the trial: its height is that at the actual position of the point.
+
+    The locator's offset and the form of the face are added. The analytic method takes the nominal position.
+    """
 
     along: Direction | None = Field(
         default=None,
@@ -86,7 +89,10 @@ class LocatingSpec(PlacingSpec):
 
 
 class ThreeTwoOneSpec(LocatingSpec):
-    """Three contacts, two, one, each along its own normal: tilted faces are touched as tilted."""
+    """Three contacts, two, one, each along its own normal: tilted faces are touched as tilted.
+
+    On an inclined wall a part that is lifted also slides sideways.
+    """
 
     words: ClassVar[str] = "a 3-2-1 move"
 

@@ -17,10 +17,12 @@ from tol3d.units import Of, Quantity
 
 
 class RelationSpec(PairSpec):
-    """Relation of one feature to another."""
+    """Relation of one feature to another, as it lies nominally."""
 
     kind: Literal["coincident", "coaxial", "tangent", "distance"] = Field(
-        description="what one feature is to the other"
+        description="coincident: two planes, a point and a plane, two points, a point and an axis, a cone and a "
+        "conical hole; coaxial: two axes; tangent: a cylinder and a plane, at the diameter of the trial; distance: a "
+        "plane or a point and a plane"
     )
     distance: Annotated[Quantity, Of("length")] | None = Field(
         default=None, description="along the target's normal, for kind: distance"
@@ -36,7 +38,11 @@ class RelationSpec(PairSpec):
 
 
 class MateSpec(PlacingSpec):
-    """Relations in order; no contact is checked."""
+    """Relations in order, each of which fixes remaining freedoms; no other contact is checked.
+
+    Free rotations stay nominal: the smallest rotation, about the middle of the `from` that requires it. A relation that
+    is not met nominally, to 0.002 mm at all ends, is refused with the amount.
+    """
 
     words: ClassVar[str] = "a mate"
     acts: ClassVar[Acts] = Mate.acts
@@ -61,7 +67,12 @@ class FitSpec(PairSpec):
 
 
 class BestFitSpec(PlacingSpec):
-    """Points are fitted as well as possible: least squares, or least largest distance; no scale."""
+    """Points are fitted to their targets as well as possible: least squares, or least largest distance; no scale.
+
+    Freedoms that the points leave stay nominal: the smallest rotation, then the smallest shift of their centroid.
+    Points and targets should coincide nominally; at a nominal distance r the relative error of the analytic method is
+    r over their distances.
+    """
 
     words: ClassVar[str] = "a best fit"
     acts: ClassVar[Acts] = BestFit.acts
@@ -89,7 +100,7 @@ SURFACES = ("plane", "cylinder", "sphere", "point")
 
 
 class TouchSpec(PlacingSpec):
-    """Contacts of round features, all at once: surfaces touch by the sizes of the trial."""
+    """Contacts of round features, all at once: surfaces touch by the sizes of the trial; one of each two is round."""
 
     words: ClassVar[str] = "a touch"
     acts: ClassVar[Acts] = Touch.acts

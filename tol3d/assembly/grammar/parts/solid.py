@@ -47,7 +47,7 @@ class Placement(Strict):
 
 
 class SolidSpec(GrowingSpec):
-    """A rigid part with features, by numbers or picked from its solid."""
+    """A rigid part with features, by numbers or picked from its solid, or `like` another part, or both."""
 
     words: ClassVar[str] = "a solid part"
     origin_field: ClassVar[KeyPath] = ("placed", "at")
@@ -57,8 +57,8 @@ class SolidSpec(GrowingSpec):
     builder: BuilderUnion | None = Field(default=None, description="its solid by dimensions, for what needs one")
     like: Name | None = Field(
         default=None,
-        description="another part whose features, tolerances and solid it has, with deviations of its own; features "
-        "beside it replace those of their names, or are further ones",
+        description="another part of the same drawing, whose features, tolerances and solid it has, with deviations of "
+        "its own; features beside it replace those of their names, or are further ones",
     )
     placed: Placement = Field(default_factory=Placement, description="nominal place; moves find theirs near it")
 
@@ -125,7 +125,7 @@ def likes(name: str, solids: Mapping[str, SolidSpec]) -> tuple[str, ...]:
 
 
 class StepSpec(SolidSpec):
-    """A rigid part whose solid is that of a STEP file, with features selected on it."""
+    """A rigid part whose solid is that of a STEP file, with features selected on it; it has no `builder`."""
 
     words: ClassVar[str] = "a part from a STEP file"
 

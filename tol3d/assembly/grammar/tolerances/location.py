@@ -127,7 +127,7 @@ class Composite(LocationSpec):
 
 
 class PositionSpec(Modified, Composite):
-    """A true position."""
+    """Position of a feature: an axis in a `diameter`, or in a `width` along one direction; a plane in a width."""
 
     words: ClassVar[str] = "a position tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", *AXES, "plane", "slot")
@@ -136,7 +136,9 @@ class PositionSpec(Modified, Composite):
 
 
 class ProfileSpec(Composite):
-    """A profile of a surface: a width about where it lies nominally, half of it outside unless `outward` says else.
+    """A profile of a plane, a point or a round surface: a width about where it lies nominally.
+
+    Half of the width lies outside the material unless `outward` says else.
 
     That of a cylinder, a cone or a sphere holds its size, its place and its form together.
     """
@@ -148,7 +150,7 @@ class ProfileSpec(Composite):
 
 
 class CoaxialitySpec(Modified, LocationSpec):
-    """A coaxiality: the axis lies in a cylinder about the datum's axis."""
+    """A coaxiality: the axis of a cylinder, an axis or a cone lies in a `diameter` about the datum's axis."""
 
     words: ClassVar[str] = "a coaxiality tolerance"
     applies_to: ClassVar[tuple[str, ...]] = AXES
@@ -158,7 +160,7 @@ class CoaxialitySpec(Modified, LocationSpec):
 
 
 class SymmetrySpec(LocationSpec):
-    """A symmetry: a median plane, or an axis in one direction, lies in a width about the datum's."""
+    """A symmetry: a median plane or slot, or an axis in one direction, lies in a `width` about the datum's."""
 
     words: ClassVar[str] = "a symmetry tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot", *AXES)
@@ -188,7 +190,11 @@ class OrientationSpec(Modified, FeatureTolerance):
 
 
 class PerpendicularitySpec(OrientationSpec):
-    """Square to a datum."""
+    """Square to a datum: the tilt of a plane, a slot, a cylinder, an axis or a cone.
+
+    Beside a location of the same feature it refines that zone and has no law; alone it has a law, and tilts the feature
+    about its middle.
+    """
 
     words: ClassVar[str] = "a perpendicularity tolerance"
 
@@ -196,7 +202,10 @@ class PerpendicularitySpec(OrientationSpec):
 
 
 class ParallelismSpec(OrientationSpec):
-    """Parallel to a datum."""
+    """Parallel to a datum: the tilt of a plane, a slot, a cylinder, an axis or a cone.
+
+    With or without a law as a perpendicularity.
+    """
 
     words: ClassVar[str] = "a parallelism tolerance"
 
@@ -204,7 +213,10 @@ class ParallelismSpec(OrientationSpec):
 
 
 class AngularitySpec(OrientationSpec):
-    """At an angle to a datum, as it is nominally."""
+    """At an angle to a datum, as it is nominally: the tilt of a plane, a slot, a cylinder, an axis or a cone.
+
+    With or without a law as a perpendicularity.
+    """
 
     words: ClassVar[str] = "an angularity tolerance"
 
@@ -212,7 +224,10 @@ class AngularitySpec(OrientationSpec):
 
 
 class AxialRunOutSpec(OrientationSpec):
-    """Axial run-out of a round face about an axis: how far it wobbles in a turn, on a circle of the `radius`."""
+    """Axial run-out of a round face about an axis: how far it wobbles in a turn, on a circle of the `radius`.
+
+    2 · `radius` · tilt, plus the face's form, is within the `width`.
+    """
 
     words: ClassVar[str] = "an axial run-out tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("plane",)
@@ -242,7 +257,11 @@ def _area(value: Any) -> tuple[Any, ...]:
 
 
 class FlatnessSpec(FormSpec):
-    """Flatness of a plane or of the median plane of a slot, or of every piece of it `per` an area."""
+    """Flatness of a plane or of the median plane of a slot, or of every piece of it `per` an area.
+
+    It reduces the width of a location zone. With a law every contact point deviates independently by up to half of it,
+    and a tab or slot with play has less clearance.
+    """
 
     words: ClassVar[str] = "a flatness tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot")
@@ -259,7 +278,11 @@ class FlatnessSpec(FormSpec):
 
 
 class StraightnessSpec(FormSpec):
-    """Straightness of an axis in a diameter, of surface lines in a width; of the whole, or of pieces `per` a length."""
+    """Straightness of an axis in a diameter, of surface lines in a width; of the whole, or of pieces `per` a length.
+
+    An axis may also be straight in a width `along` a direction; of a plane `lines` are stated. It reduces the width of
+    the location zone. With a law contact points deviate, and a pin or hole with play has less clearance.
+    """
 
     words: ClassVar[str] = "a straightness tolerance"
     applies_to: ClassVar[tuple[str, ...]] = (*AXES, "plane")
@@ -270,7 +293,10 @@ class StraightnessSpec(FormSpec):
 
 
 class RoundnessSpec(FormSpec):
-    """Roundness of every section of a cylinder, a cone or a sphere, between two circles with one centre."""
+    """Roundness of every section of a cylinder, a cone or a sphere, between two circles with one centre.
+
+    It reduces the width of run-outs.
+    """
 
     words: ClassVar[str] = "a roundness tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ROUND
@@ -279,7 +305,10 @@ class RoundnessSpec(FormSpec):
 
 
 class CylindricitySpec(FormSpec):
-    """Cylindricity: a cylinder lies between two cylinders with one axis."""
+    """Cylindricity: a cylinder lies between two cylinders with one axis.
+
+    It reduces the width of run-outs and of the zone of the axis.
+    """
 
     words: ClassVar[str] = "a cylindricity tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("cylinder",)
@@ -288,7 +317,10 @@ class CylindricitySpec(FormSpec):
 
 
 class CircularRunOutSpec(LocationSpec):
-    """Radial run-out at the middle section: twice the eccentricity; the zone's width is the run-out."""
+    """Radial run-out at the middle section of a cylinder, an axis or a cone.
+
+    Twice the eccentricity is within the `width` less the form of the section.
+    """
 
     words: ClassVar[str] = "a circular run-out tolerance"
     applies_to: ClassVar[tuple[str, ...]] = AXES
@@ -298,7 +330,10 @@ class CircularRunOutSpec(LocationSpec):
 
 
 class TotalRunOutSpec(LocationSpec):
-    """Radial run-out at both ends."""
+    """Radial run-out of a whole cylinder, axis or cone.
+
+    At both ends twice the eccentricity is within the `width` less the form of the whole.
+    """
 
     words: ClassVar[str] = "a total run-out tolerance"
     applies_to: ClassVar[tuple[str, ...]] = AXES

@@ -18,7 +18,11 @@ from tol3d.units import Of, Quantity
 
 
 class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
-    """Offset of a feature along a direction, without tilt. A feature may have one along each direction."""
+    """A dimension with limits: the offset of a feature along a direction, without tilt.
+
+    With `datums` positive is a longer dimension, without them an offset along the normal. An axis needs a direction
+    `along`, square to it. A feature may have one dimension along each direction.
+    """
 
     words: ClassVar[str] = "a plus-minus tolerance"
 
@@ -44,7 +48,10 @@ Deviation = Annotated[Quantity, Of("length")]
 
 
 class SizeSpec(FeatureTolerance, ToleranceSpec):
-    """Deviation of a diameter or width from nominal; of a cone, of the diameter of every section."""
+    """Deviation of a diameter or width from nominal, positive where it is larger, also of a hole.
+
+    Of a cylinder, a sphere, a slot or a tab; of a cone, of the diameter of every section.
+    """
 
     words: ClassVar[str] = "a size tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "cone", "slot", "sphere")

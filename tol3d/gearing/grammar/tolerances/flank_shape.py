@@ -280,7 +280,8 @@ class FlankShapeSpec(FlankToleranceSpec):
 class ProfileSlopeSpec(FlankShapeSpec):
     """f_Halpha, a length: offset of the flank at its tip less that at the start of its active profile.
 
-    Linear in the roll over the whole involute, 0 in the middle between both, or of a range that is stated.
+    Positive adds material at the tip. Linear in the roll over the whole involute, 0 in the middle between both, or of a
+    range that is stated.
     """
 
     kind: Literal["profile_slope"]
@@ -335,7 +336,8 @@ class ProfileFormSpec(FlankShapeSpec):
 class HelixSlopeSpec(FlankShapeSpec):
     """f_Hbeta, a length: offset of the flank at the upper end of its face less that at the lower end.
 
-    Linear in the gear's z over the whole face width, 0 in its middle, or in that of a range that is stated.
+    Positive adds material at the upper end. Linear in the gear's z over the whole face width, 0 in its middle, or in
+    that of a range that is stated.
     """
 
     kind: Literal["helix_slope"]
