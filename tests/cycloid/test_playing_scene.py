@@ -1,7 +1,9 @@
 """Scenes whose bearings have play: where builds of their columns rest, by HiGHS, and what pure play does by hand."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,8 @@ from oracles.playing_reducer import PlayingReducer
 from places import SCENES
 
 from tol3d import SceneError, load_scene
-from tol3d.gearing.cycloid.reducer.resting import exact_turning
+from tol3d.gearing.cycloid.first_order.linear_rest import LinearRest
+from tol3d.gearing.cycloid.reducer.resting import LinearResting, exact_turning
 from tol3d.gearing.cycloid.reducer.trials import RVTrials
 from tol3d.study.tallies.tally import Tally, grids_of
 from tol3d.study.trials.columns import columns_of
@@ -95,6 +98,38 @@ def test_equal_play_turns_the_carrier_by_itself_over_the_cranks_circle_either_wa
         more = 2 * np.arcsin((disc + carrier) / 2 * 1e-3 / (2 * SMALL))
         for name, times in (("transmission error", -1), ("lost motion", 2)):
             np.testing.assert_allclose(found[name] - first[name], times * more, rtol=0, atol=within)
+
+
+def test_forces_of_trials_are_read_again_and_those_of_other_builds_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Deviations that are read again from columns differ by rounding; builds of slopes by a millionth of a micrometre.
+
+    Rates are those of a reducer that knows nothing yet.
+    """
+    made = simulated(tmp_path, TEXT)
+    system, turns = made.system, np.linspace(0.0, 0.7, 20)
+    assert isinstance(system, RVTrials)
+    own, deviated, solved = system.own, system.deviated(drawn(made, 0, 20)), []
+    rests = LinearRest.rests
+
+    def counted(*given: Any) -> Any:
+        solved.append(len(given[2]))
+        return rests(*given)
+
+    monkeypatch.setattr(LinearRest, "rests", counted)
+    LinearResting(own).turned(deviated[:12], turns[:12, None], 1)
+    for build, count in ((deviated.plus(deviated, 4e-16), [8]), (deviated.plus(deviated, 1e-6), [20])):
+        expected = LinearResting(replace(own)).rates(build, turns, 1)
+        solved.clear()
+        found = LinearResting(own).rates(build, turns, 1)
+        assert solved == count
+        for at in (("stage", "pins"), ("disc_play",), ("sun_thickness",), ("stage", "carrier_holes")):
+            one, other = found, expected
+            for name in at:
+                one, other = getattr(one, name), getattr(other, name)
+            assert np.abs(other).max() > 1e-4
+            np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
 
 
 @pytest.mark.slow

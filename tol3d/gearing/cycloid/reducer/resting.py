@@ -6,11 +6,13 @@ build, that one holds nothing. Rates of the analytic method follow from the forc
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from functools import partial
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.gearing.cycloid.exact.contact_kernel import first_contacts
 from tol3d.gearing.cycloid.exact.mesh_kernel import planet_turns
@@ -36,6 +38,7 @@ from tol3d.gearing.reducers.trials import Solver
 from tol3d.gears import LEFT, RIGHT
 from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.cone_programme import cone_programmes
+from tol3d.numerics.kept import row_keys
 from tol3d.numerics.plane import as_complex, as_points, evenly
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED
 from tol3d.study.system.method import ANALYTIC_METHOD
@@ -102,6 +105,8 @@ def _of_bearings(own: RVSet, found: Deviated, phis: Array, forces: Forces) -> No
 
 
 AT_ONCE: Final = 1024  # rests of the analytic method in memory, some 10 kB each
+ALIKE: Final = 1e-11  # mm or rad; builds read again from columns differ by rounding alone, and have the same forces
+Known = tuple[Forces, Array, int]  # forces and crank angles of several rests, and one of them
 MEANS: Final = {OK: OK, NO_ROOM: NO_FIT, STALLED: NO_REST, NOT_HELD: NO_CONTACT}
 
 
@@ -162,6 +167,9 @@ class LinearResting:
             for first in range(0, trials, AT_ONCE):
                 rows = np.arange(first, min(first + AT_ONCE, trials))
                 forces = self._forces(deviated[rows], phis[rows, position], play, (rows, position), sense)
+                if beta.shape[1] == 1:
+                    known = _each_of(forces, phis[rows, 0])
+                    own.known_forces(sense).of(_keys(deviated[rows], turns[rows]), partial(_of_known, known))
                 found[rows, position] = forces.turns
                 near[rows, position] = (forces.gaps <= (deflection or 0.0)).sum(axis=1)
                 places[rows, position] = np.abs(forces.pins).reshape(len(rows), -1).argmax(axis=1)
@@ -170,16 +178,23 @@ class LinearResting:
 
     def rates(self, deviated: RVDeviated, turns: Array, sense: int) -> RVDeviated:
         """Derivatives of the turn at output turns (trials,) by each deviation, from the forces at rest."""
-        own, at, rates = self.own, turns[:, None], RVDeviated.nothing(self.own, len(turns))
-        beta, _ = crank_turns(own, deviated, at, sense, first_order_mesh)
-        phis = led_angles(own, at, beta)
-        play = play_of(own, deviated, at, beta, first_order_mesh)
+        own, rates = self.own, RVDeviated.nothing(self.own, len(turns))
         for first in range(0, len(turns), AT_ONCE):
             rows = np.arange(first, min(first + AT_ONCE, len(turns)))
-            part = deviated[rows]
-            forces = self._forces(part, phis[rows, 0], play, (rows, 0), sense)
-            rates[rows] = rest_rates(own, part, turns[rows], phis[rows, 0], forces)
+            part, at = deviated[rows], turns[rows, None]
+            known = own.known_forces(sense).of(_keys(part, at), partial(self._solved, part, at, sense))
+            phis = np.array([angles[k] for _, angles, k in known])
+            rates[rows] = rest_rates(own, part, turns[rows], phis, _put_together(known))
         return rates
+
+    def _solved(self, deviated: RVDeviated, turns: Array, sense: int, rows: NDArray[np.intp]) -> Sequence[Known]:
+        """Forces of some trials (rows) at output turns (trials, 1)."""
+        own, part, at = self.own, deviated[rows], turns[rows]
+        beta, _ = crank_turns(own, part, at, sense, first_order_mesh)
+        phis = led_angles(own, at, beta)
+        play = play_of(own, part, at, beta, first_order_mesh)
+        forces = self._forces(part, phis[:, 0], play, (np.arange(len(rows)), 0), sense)
+        return _each_of(forces, phis[:, 0])
 
     def _forces(self, part: RVDeviated, phis: Array, play: Play, at: tuple[Places, int], sense: int) -> Forces:
         """Forces of some trials (rows) at a position, given the play of all."""
@@ -187,6 +202,31 @@ class LinearResting:
         played = Play(play.disc[rows], play.carrier[rows], play.crank[rows, position], play.leaving)
         aside = None if own.width is None else part.disc_tilts * (own.width / 2)
         return LinearRest.of(own).rests(held_stage(own, part), phis, played, 1 if sense > 0 else -1, aside)
+
+
+def _keys(deviated: RVDeviated, turns: Array) -> list[bytes]:
+    """Keys of trials at output turns (trials, 1), the same of builds that differ by rounding."""
+    stage = [getattr(deviated.stage, field.name) for field in fields(deviated.stage)]
+    others = [getattr(deviated, field.name) for field in fields(deviated) if field.name != "stage"]
+    rows = np.concatenate([own.reshape(len(turns), -1) for own in (*stage, *others, turns)], axis=1)
+    return row_keys(np.rint(rows / ALIKE) + 0.0)  # no -0
+
+
+def _each_of(forces: Forces, phis: Array) -> Sequence[Known]:
+    return [(forces, phis, k) for k in range(len(phis))]
+
+
+def _of_known(known: Sequence[Known], rows: NDArray[np.intp]) -> Sequence[Known]:
+    return [known[k] for k in rows]
+
+
+def _put_together(known: Sequence[Known]) -> Forces:
+    """Forces of rests that were found at several times; gaps, which are of the pins that worked then, are left out."""
+    names = (field.name for field in fields(Forces))
+    none = np.empty((len(known), 0))
+    return Forces(
+        **{name: none if name == "gaps" else np.array([getattr(own, name)[k] for own, _, k in known]) for name in names}
+    )
 
 
 def exact_turning(own: RVSet) -> Turning:

@@ -13,7 +13,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -22,9 +22,11 @@ from tol3d.gearing.cycloid.first_order.linear import LinearStage
 from tol3d.gearing.cycloid.model.profile import DiscProfile
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.kept import KnownRows, kept
 from tol3d.numerics.plane import evenly
 
 REST_COSTS: Final = 80  # times a first contact
+MOST_FORCES: Final = 4096  # rests whose forces are kept, some 2 kB each
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,11 @@ class RVSet:
     width: float | None = None
     plays: bool = False
     by_formula: bool = False
+
+    @kept
+    def known_forces(self, sense: int) -> KnownRows[Any]:
+        """Forces that its analytic method has found, at one position a trial: regressors read them again."""
+        return KnownRows(MOST_FORCES)
 
     @property
     def input(self) -> str:
