@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -124,10 +125,8 @@ def test_forces_of_trials_are_read_again_and_those_of_other_builds_found(
         solved.clear()
         found = LinearResting(own).rates(build, turns, 1)
         assert solved == count
-        for at in (("stage", "pins"), ("disc_play",), ("sun_thickness",), ("stage", "carrier_holes")):
-            one, other = found, expected
-            for name in at:
-                one, other = getattr(one, name), getattr(other, name)
+        for at in ("stage.pins", "disc_play", "sun_thickness", "stage.carrier_holes"):
+            one, other = (np.asarray(attrgetter(at)(rates)) for rates in (found, expected))
             assert np.abs(other).max() > 1e-4
             np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
 

@@ -184,6 +184,7 @@ def test_builds_that_differ_in_a_pin_or_a_lobe_rest_where_each_does_by_itself(se
     """Most pins carry nothing and may shrink or grow a little; others then carry, or are those that do."""
     mean = drawn(1, 0.002, seed=8)
     play = Play(np.full((), 0.02), np.full((), 0.015), np.array([-1e-5, 1e-5]))
+    changes: list[tuple[str, tuple[int, ...], float]]
     changes = [("pin_radii", (0, pin), by) for pin in range(40) for by in (-0.004, 0.004, 0.03)]
     changes += [("lobe_profile", (0, disc, lobe), 0.004) for disc in range(2) for lobe in range(0, 39, 3)]
     builds = []

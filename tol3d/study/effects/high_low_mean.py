@@ -241,12 +241,14 @@ class _Ranges:
             own.ask(measure.name for measure in self.seated)
         self._answer(asking)
         for own in asking:
-            for measure in self.seated:
-                if all_exact:
+            if all_exact:
+                for measure in self.seated:
                     self._take(own, measure.name)
-                else:
-                    place = self.places[own.contributor.name]
-                    self.by_measure[measure.name][place] = own.first_order(measure.name, self.middle[measure.name])
+                continue
+            for name, found in own.first_order(
+                {measure.name: self.middle[measure.name] for measure in self.seated}
+            ).items():
+                self.by_measure[name][self.places[own.contributor.name]] = found
 
     def build_the_largest(self, asking: Sequence["_Alone"], count: int) -> None:
         """Find the ranges of the contributors that move a measure most, in place of their first-order effects."""
@@ -292,6 +294,7 @@ class _Alone:
         ends: by measure, where it ends; None where that cannot be known.
         waiting: components that are asked for, with the measures that ask, by their bytes.
         known: by those bytes, values of measures of several builds with the place of this one among them.
+        known_together: the same of several builds that were asked together, by the bytes of all, with all their places.
         builds_ends: whether ends are built as soon as they are known.
         read_at: by measure, components (rows, components) and values (rows,) that were read of it last.
     """
@@ -303,6 +306,7 @@ class _Alone:
     ends: dict[str, Array | None] = field(default_factory=dict)
     waiting: dict[bytes, tuple[Array, list[str]]] = field(default_factory=dict)
     known: dict[bytes, list[tuple[Mapping[str, Array], int]]] = field(default_factory=dict)
+    known_together: dict[bytes, list[tuple[Mapping[str, Array], list[int]]]] = field(default_factory=dict)
     builds_ends: bool = True
     read_at: dict[str, tuple[Array, Array]] = field(default_factory=dict)
 
@@ -331,16 +335,26 @@ class _Alone:
         if (ends := self.ends.get(name)) is not None:
             self._want(ends, name)
 
-    def first_order(self, name: str, middle: float) -> float:
-        """Range of a measure, from readings about the mean build; nan where its ends are not known.
+    def first_order(self, middles: Mapping[str, float]) -> dict[str, float]:
+        """Ranges of measures, from readings about the mean build; nan where its ends are not known.
 
         A sum of the effects of each component to either side: a tilt that the highest point follows acts alike to both.
+
+        Args:
+            middles: by measure, its value of the mean build.
         """
-        if (ends := self.ends.get(name)) is None:
-            return math.nan
-        rows, found = self.read_at[name]
-        to_sides, *_ = np.linalg.lstsq(self._sides(rows), found - middle)
-        return _range(0.0, self._sides(ends) @ to_sides)
+        found = dict.fromkeys(middles, math.nan)
+        alike: dict[bytes, list[str]] = {}
+        for name in middles:
+            if self.ends.get(name) is not None:
+                alike.setdefault(self.read_at[name][0].tobytes(), []).append(name)
+        for names in alike.values():
+            effects = np.stack([self.read_at[name][1] - middles[name] for name in names], axis=1)
+            to_sides, *_ = np.linalg.lstsq(self._sides(self.read_at[names[0]][0]), effects)
+            for k, name in enumerate(names):
+                if (ends := self.ends[name]) is not None:
+                    found[name] = _range(0.0, self._sides(ends) @ to_sides[:, k])
+        return found
 
     def _sides(self, rows: Array) -> Array:
         off = rows - self.mean[0, self.columns]
@@ -348,19 +362,29 @@ class _Alone:
 
     def _want(self, rows: Array, name: str) -> None:
         for row in rows:
-            if self._value(key := row.tobytes(), name) is None:
+            key = row.tobytes()
+            if not self.known or self._place(key, name) is None:
                 self.waiting.setdefault(key, (row, []))[1].append(name)
 
-    def _value(self, key: bytes, name: str) -> float | None:
-        return next((float(found[name][k]) for found, k in self.known.get(key, ()) if name in found), None)
+    def _place(self, key: bytes, name: str) -> tuple[Mapping[str, Array], int] | None:
+        for own in self.known.get(key, ()):
+            if name in own[0]:
+                return own
+        return None
 
     def read(self, rows: Array, name: str) -> Array:
         """Values of a measure (rows,) of components (rows, components)."""
-        found = [self._value(row.tobytes(), name) for row in rows]
-        if None in found:
+        together = self.known_together.setdefault(rows.tobytes(), [])
+        for found, at in together:
+            if name in found:
+                return np.asarray(found[name][at], dtype=np.float64)
+        places = [own for row in rows if (own := self._place(row.tobytes(), name)) is not None] if self.known else []
+        if len(places) < len(rows):
             self._want(rows, name)
             raise _NotKnownError
-        return np.array(found, dtype=np.float64)
+        if all(own[0] is places[0][0] for own in places):
+            together.append((places[0][0], [k for _, k in places]))
+        return np.array([found[name][k] for found, k in places], dtype=np.float64)
 
     def of(self, name: str) -> Array | None:
         """Values at both ends, None where these are not known."""
