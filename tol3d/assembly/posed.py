@@ -6,6 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from tol3d.assembly.grammar.checks import paths_of, pose_names, read_at
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
@@ -73,8 +74,8 @@ class PosedSystem(AssemblySystem):
         return found
 
     @property
+    @override
     def statuses(self) -> Statuses:  # type: ignore[override]
-        """See System."""
         return WITH_LOOPS if has_loops(self.assembly) else super().statuses
 
     @property
@@ -110,8 +111,8 @@ class PosedSystem(AssemblySystem):
         found = {pose: own.materials(method) for pose, own in self.poses.items() if method in own.methods}
         return found if any(own is not None for own in found.values()) else None
 
+    @override
     def method(self, name: str, materials: Any) -> Method:
-        """See System."""
         given = materials or {}
         own = {pose: each.method(name, given.get(pose)) for pose, each in self.poses.items() if name in each.methods}
         return PosedMethod(self.at, own)
@@ -137,8 +138,8 @@ class PosedSystem(AssemblySystem):
             return {**found, "pose": poses[0]} if poses[0] else found
         return {**found, "path": poses[0].partition("|")[0], "take": measure.take}
 
+    @override
     def chord_bound(self, measure: Measure, chord_error: float) -> float:
-        """See System."""
         return max(self.poses[pose].chord_bound(measure, chord_error) for pose in self.at[measure.name])
 
     # what acts on a measure -------------------------------------------------------------------------
@@ -154,8 +155,8 @@ class PosedSystem(AssemblySystem):
         names = {own.name for pose in self.at[name] for own in self.poses[pose]._acting_on(name)}
         return [contributor for contributor in self.contributors if contributor.name in names]
 
+    @override
     def regressor_key(self, measure: Measure) -> Hashable:
-        """See System."""
         if measure.take != "value":
             return measure.name
         return self.at[measure.name][0], self._alone(measure).regressor_key(measure)

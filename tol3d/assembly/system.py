@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from tol3d.assembly.at_rest import at_rest
 from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing, witness_of
@@ -90,8 +91,8 @@ class AssemblySystem(PlainSystem):
         return TorsorMethod(self.assembly) if name == ANALYTIC_METHOD else PlacingMethod(self.assembly)
 
     @property
+    @override
     def warnings(self) -> Sequence[str]:  # type: ignore[override]
-        """See System."""
         return self.idle
 
     @property

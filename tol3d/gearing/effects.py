@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.gearing.shafts import Mesh
 from tol3d.gears.flank import Flank
@@ -60,24 +61,24 @@ class CombinedEffect(Effect):
     effects: tuple[Effect, ...]
 
     @property
+    @override
     def singles(self) -> tuple[Effect, ...]:
-        """See Effect."""
         return self.effects
 
+    @override
     def acts_in(self, mesh: Mesh) -> bool:
-        """See Effect."""
         return any(effect.acts_in(mesh) for effect in self.effects)
 
+    @override
     def clocking(self, mesh: Mesh) -> float:
-        """See Effect."""
         return sum(effect.clocking(mesh) for effect in self.effects)
 
+    @override
     def acts_on(self, link: str) -> bool:
-        """See Effect."""
         return any(effect.acts_on(link) for effect in self.effects)
 
+    @override
     def deviates_teeth(self, gear: str) -> bool:
-        """See Effect."""
         return any(effect.deviates_teeth(gear) for effect in self.effects)
 
     @property
@@ -252,8 +253,8 @@ class FlankDeviation(Effect):
         """In every mesh of the gear."""
         return self.part in (mesh.driver, mesh.driven)
 
+    @override
     def deviates_teeth(self, gear: str) -> bool:
-        """See Effect."""
         return gear == self.part
 
 

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.errors import InputError
 from tol3d.files import Files
@@ -167,16 +168,16 @@ class ToleranceSpec(ToleranceEntry):
     distribution: StatedDistribution = Field(description="the law of the deviation")
 
     @property
+    @override
     def nominal(self) -> str:
-        """See ToleranceEntry."""
         return "nominal"
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Files that its law reads."""
         return ((("distribution", field), name) for field, name in self.distribution.file_names())
 
+    @override
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
-        """See ToleranceEntry."""
         return self.model_copy(update={"distribution": scaled_law(self.distribution, factor, stays, files)})
 
     @model_validator(mode="after")

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from tol3d.assembly.linkage.closing import loops_closed
 from tol3d.assembly.linkage.first_order import Displaced
@@ -93,13 +94,13 @@ class ClosedLoop(Move):
         return self.kinematics.structure
 
     @property
+    @override
     def parts(self) -> tuple[str, ...]:
-        """See Move."""
         return self.structure.bodies
 
     @property
+    @override
     def carriers(self) -> tuple[str, ...]:
-        """See Move."""
         before = ((own.joint.of if own.reverse else own.joint.on) for own in self.structure.tree)
         return tuple(feature.partition(".")[0] for feature in before)
 
@@ -114,13 +115,13 @@ class ClosedLoop(Move):
         return tuple(found)
 
     @property
+    @override
     def feature_pairs(self) -> Sequence[tuple[str, str]]:
-        """See Move."""
         return self._pairs
 
     @property
+    @override
     def words(self) -> str:
-        """See Move."""
         return ", ".join(step.joint.name for step in self.structure.steps)
 
     @cached_property

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import ClassVar, Literal, Self
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.values import Valued
@@ -243,8 +244,8 @@ class Slot(Plane):
     facing: ClassVar[str] = "across"
 
     @property
+    @override
     def words(self) -> str:
-        """See Point."""
         a, b = self.extent
         return f"{'slot' if self.inner else 'tab'} {self.width:g} mm wide, {a:g} × {b:g} mm"
 
@@ -372,8 +373,8 @@ class Cone(Axis):
     asks: ClassVar[Asks] = ("all", "direction")
 
     @property
+    @override
     def words(self) -> str:
-        """See Point."""
         (start, end), angle = self.diameters, math.degrees(abs(self.angle))
         word = "conical hole" if self.inner else "cone"
         return f"{word} ⌀{start:.6g} to ⌀{end:.6g} mm, half angle {angle:.4g} deg, {self.length:g} mm long"
@@ -388,8 +389,8 @@ class Cone(Axis):
         """Place of its apex."""
         return self.apex
 
+    @override
     def moved(self, displaced: Displaced) -> Array:
-        """See Point."""
         return np.concatenate([super().moved(displaced), displaced(np.zeros(3))[2:]])
 
     @property

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import ndtri
+from typing_extensions import override
 
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
@@ -94,8 +95,8 @@ class UniformFlat(UnitLaw):
 
     uniforms = 2
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return self.section.groups
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
@@ -113,8 +114,8 @@ class NormalFlat(UnitLaw):
 
     uniforms = 2
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return self.section.groups
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
@@ -130,8 +131,8 @@ class RingFlat(UnitLaw):
 
     uniforms = 1
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return (Group("phase", (0,)),)
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
@@ -170,8 +171,8 @@ class UniformSphere(UnitLaw):
 
     uniforms = 3
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return (Group("space", (0, 1, 2)),)
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
@@ -187,8 +188,8 @@ class NormalSphere(UnitLaw):
 
     uniforms = 3
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return (Group("space", (0, 1, 2)),)
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:

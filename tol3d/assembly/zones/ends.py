@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.assembly.zones.balls import NormalLine
 from tol3d.assembly.zones.cross_section import (
@@ -73,8 +74,8 @@ class UniformEnds(UnitLaw):
 
     uniforms = 4
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         if isinstance(ratio, float) and ratio >= 1.0:
             return Group("plane", (0, 1)), Group("plane", (2, 3))
         return Group("plane", (0, 3)), *scalars(2, 1)
@@ -102,8 +103,8 @@ class NormalEnds(UnitLaw):
 
     uniforms = 4
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return Group("plane", (0, 1)), Group("plane", (2, 3))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.assembly.zones.balls import NormalLine
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
@@ -61,8 +62,8 @@ class UniformFace(UnitLaw):
         """Height and both rises."""
         return 3
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return (*scalars(1), *shifted(self.section.groups, 1))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
@@ -95,8 +96,8 @@ class NormalFace(UnitLaw):
         """Height and both rises."""
         return 3
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return (*scalars(1), *shifted(self.section.groups, 1))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:

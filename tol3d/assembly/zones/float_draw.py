@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import Final, Literal, Self
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.assembly.zones.cross_section import QUARTER_TURN, uniform_lens
 from tol3d.assembly.zones.inverse import inverse
@@ -155,8 +156,8 @@ class GaugeShift(Widened):
         raise InputError(f"expected a tolerance, got the room of a gauge, which {self.size.name} leaves")
 
     @property
+    @override
     def words(self) -> str:
-        """See ZoneDraw."""
         return f"uniform in the clearance of its gauge, by {', '.join(self.reads)}"
 
     @property

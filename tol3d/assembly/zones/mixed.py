@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.assembly.zones.balls import Line, NormalLine
 from tol3d.assembly.zones.cross_section import QUARTER_TURN, Disc, cut_rayleigh
@@ -166,8 +167,8 @@ class NormalEndsAlong(UnitLaw):
 
     uniforms = 4
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return Group("plane", (0, 1)), Group("plane", (2, 3))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
@@ -276,8 +277,8 @@ class NormalFlatEndsRound(UnitLaw):
 
     uniforms = 3
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return (*scalars(1), *shifted((Group("plane", (0, 1)),), 1))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
@@ -341,8 +342,8 @@ class Beside(UnitLaw):
         """Those of both."""
         return self.location.uniforms + self.orientation.uniforms
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         own = self.location.groups(1.0)
         return (*own, *shifted(self.orientation.groups(1.0), self.location.uniforms))
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import betaincinv, gammainc, gammaincinv
+from typing_extensions import override
 
 from tol3d.assembly.zones.cross_section import SIGMAS
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS
@@ -69,8 +70,8 @@ class LawOfMotions(UnitLaw):
         """One a coordinate."""
         return self.shifts + self.turns
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return (*_group(self.shifts, 0), *_group(self.turns, self.shifts))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:

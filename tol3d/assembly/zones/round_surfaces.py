@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.assembly.zones.cross_section import SIGMAS, Disc, cut_normal, cut_rayleigh, cut_variance
 from tol3d.assembly.zones.ends import Ends, UniformEnds, room
@@ -49,8 +50,8 @@ class UniformRoundSurface(UnitLaw):
 
     uniforms = 5
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return (*scalars(1), *shifted(UniformEnds().groups(1.0), 1))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
@@ -71,8 +72,8 @@ class NormalRoundSurface(UnitLaw):
 
     uniforms = 5
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return Group("plane", (0, 1)), *scalars(1, 2), Group("plane", (3, 4))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
@@ -142,8 +143,8 @@ class OutwardFirst(UnitLaw):
         """As of the law."""
         return self.law.uniforms
 
+    @override
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """See UnitLaw."""
         return self.law.groups(ratio)
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:

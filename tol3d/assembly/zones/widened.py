@@ -12,6 +12,7 @@ from typing import Final, Self
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
+from typing_extensions import override
 
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones.zone import Ratio, Zone
@@ -231,8 +232,8 @@ class Widened(ZoneDraw):
     size: SizedBy
 
     @property
+    @override
     def words(self) -> str:
-        """See ZoneDraw."""
         way = "widened by" if self.size.bonus.of_zone or self.size.bonus.of_orientation else "with"
         return f"{self.confined.words}, {way} {self.size.words}"
 
@@ -251,8 +252,8 @@ class Widened(ZoneDraw):
         _, ratio = self.zone.halves(np.array([self.zone.width]), None)
         return self.confined.law.groups(ratio)
 
+    @override
     def sized(self, width: float) -> Self:
-        """See Zoned."""
         confined = self.confined.sized(width)
         return replace(self, zone=confined.zone, confined=confined)
 
@@ -324,8 +325,8 @@ class JudgedProcess(Process):
     size: SizedBy
 
     @property
+    @override
     def words(self) -> str:
-        """See ZoneDraw."""
         return f"its own process, judged with {self.size.words}"
 
     @property

@@ -9,6 +9,7 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from tol3d.assembly.zones.balls import RingFlat
 from tol3d.assembly.zones.centred import Centred
@@ -157,8 +158,8 @@ class Confined(ZoneDraw):
     name: str
 
     @property
+    @override
     def words(self) -> str:
-        """See ZoneDraw."""
         return f"{self.name} in its zone"
 
     @cached_property
@@ -190,8 +191,8 @@ class Confined(ZoneDraw):
     def covariance(self) -> Array:
         return self.law.covariance(self.zone.ratio) * self.zone.half**2
 
+    @override
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
-        """See ZoneDraw."""
         return self._drawn(self.zone.half, self.zone.ratio, uniforms)
 
     def deviations_in(self, width: Ratio, orientation: Ratio | None, *uniforms: Array) -> tuple[Array, ...]:
@@ -225,8 +226,8 @@ class Process(ZoneDraw):
             raise InputError(f"process: expected {expected}, got {len(self.laws)}")
 
     @property
+    @override
     def words(self) -> str:
-        """See ZoneDraw."""
         return "its own process"
 
     @property

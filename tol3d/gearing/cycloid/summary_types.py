@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Annotated, Final, Literal
 
 from pydantic import Field
+from typing_extensions import override
 
 from tol3d.study.runs.summary.kinds import SummaryKinds
 from tol3d.study.runs.summary.measure import OutputMeasureSummary
@@ -97,8 +98,8 @@ class RVMeasureSummary(OutputMeasureSummary):
         return f"{taken}pins within {self.deflection_um:g} µm of contact of {self.of}"
 
     @property
+    @override
     def identity(self) -> tuple[str | None, ...]:
-        """See MeasureSummary."""
         return *super().identity, None if self.deflection_um is None else f"{self.deflection_um:g}"
 
 

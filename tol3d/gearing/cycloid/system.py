@@ -6,6 +6,8 @@ from functools import partial
 from importlib import import_module
 from typing import Any, ClassVar, Final
 
+from typing_extensions import override
+
 from tol3d.gearing.cycloid.exact.places import usual_shapes
 from tol3d.gearing.cycloid.model.shapes import lobe_strips
 from tol3d.gearing.cycloid.reducer.formula import stages_by_formula
@@ -52,8 +54,8 @@ class RVSystem(RVTrials):
     solvers: ClassVar[Mapping[str, Solver]] = SOLVERS
     statuses: ClassVar[Statuses] = STATUSES
 
+    @override
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
-        """See System."""
         mean = self.deviated(mean_build(self, self.measures[0]))
         return problems_at(self.own, self.acts, self.contributors, mean)
 
@@ -65,8 +67,8 @@ class RVSystem(RVTrials):
             else None
         )
 
+    @override
     def method(self, name: str, materials: Any) -> Method:
-        """See System."""
         if name == FCL:
             made: Method = import_module(WITNESS).witness(self, materials)
             return made
@@ -95,8 +97,8 @@ class RVSystem(RVTrials):
         else:
             super().regress(measure, contributors, columns, rows)
 
+    @override
     def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
-        """See System."""
         return neglected(self, self.read[measure.name], trials)
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:

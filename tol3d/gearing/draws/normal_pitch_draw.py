@@ -7,6 +7,7 @@ from itertools import accumulate
 
 import numpy as np
 import scipy
+from typing_extensions import override
 
 from tol3d.gearing.draws.pitch_draw import PitchDraw, centred
 from tol3d.numerics.arrays import Array
@@ -32,8 +33,8 @@ class NormalPitchDraw(PitchDraw):
     cpk: float = 1.0
 
     @property
+    @override
     def words(self) -> str:
-        """See JointDraw."""
         return f"normal pitches, Cpk {self.cpk:g}, within F_p, each of {self.teeth}"
 
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:

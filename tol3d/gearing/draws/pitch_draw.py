@@ -15,6 +15,7 @@ from itertools import pairwise
 from typing import ClassVar, Final, Self
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
@@ -79,20 +80,20 @@ class RunOutAndRandom(Pattern):
     run_out: float
 
     @property
+    @override
     def words(self) -> str:
-        """See Pattern."""
         return f"{100 * self.run_out:g} % run-out, rest random"
 
     def uniforms(self, teeth: int) -> int:
         """See Pattern: a phase, and one a tooth."""
         return 1 + teeth
 
+    @override
     def groups(self, teeth: int) -> tuple[Group, ...]:
-        """See Pattern."""
         return Group("phase", (0,)), *scalars(teeth, 1)
 
+    @override
     def drawn(self, uniforms: Sequence[Array]) -> list[Array]:
-        """See Pattern."""
         phase, *others = uniforms
         wave, noise = math.sqrt(2 * self.run_out), math.sqrt(1 - self.run_out)
         return [

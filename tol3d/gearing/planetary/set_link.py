@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.gearing.links import LinkTrials
 from tol3d.gearing.model.brought import Brought
@@ -85,8 +86,8 @@ class SetLink(ReducerLink):
         return {name: self.height + (middle if name == self.own.carrier else at) for name, at in heights.items()}
 
     @property
+    @override
     def pins(self) -> Sequence[tuple[float, float]]:
-        """See StatedLink."""
         return [(self.own.centre_distance, azimuth) for azimuth in self.own.azimuths]
 
     @property

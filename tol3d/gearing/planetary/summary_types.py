@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Final, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.strict import refused
 from tol3d.study.runs.summary.kinds import SummaryKinds
@@ -33,8 +34,8 @@ class PlanetaryMeasureSummary(OutputMeasureSummary):
         return f"{self.quantity} of {self.shaft}, {self.of}"
 
     @property
+    @override
     def identity(self) -> tuple[str | None, ...]:
-        """See MeasureSummary."""
         return *super().identity, self.shaft
 
 

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Any, ClassVar, Final
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.cad.solids import measuring_strips
 from tol3d.gearing.planetary.exact.shown import Made, ShownSet, shown_set
@@ -56,8 +57,8 @@ class PlanetarySystem(SetTrials):
     methods: ClassVar[Mapping[str, MethodKind]] = METHODS
     statuses: ClassVar[Statuses] = STATUSES
 
+    @override
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
-        """See System."""
         measure = self.measures[0]
         return problems_at(self.own, self.deviated(mean_build(self, measure)), self.read[measure.name].shaft)
 
@@ -69,8 +70,8 @@ class PlanetarySystem(SetTrials):
             return None
         return {name: measuring_strips(gear, self.profile_steps) for name, gear in self.made.items()}
 
+    @override
     def method(self, name: str, materials: Any) -> Method:
-        """See System."""
         if name == FCL:
             made: Method = import_module(WITNESS).witness(self, self.made, materials)
             return made

@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any, ClassVar, Final, Protocol
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.gearing.planetary.exact.contact import Contact
 from tol3d.gearing.planetary.exact.contact_kernel import seated_ranges
@@ -55,8 +56,8 @@ class SetTrials(ReducerTrials):
         """Offsets of gears from their axes do, at random positions; see System."""
         return positions.over == "random" and self.acts[contributor.name].effect == "offset"
 
+    @override
     def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """See System."""
         return {**super().describe(measure), "shaft": self.read[measure.name].shaft}
 
     def gap_bound(self, measure: Measure, errors: Sequence[float]) -> float:
@@ -98,8 +99,8 @@ class PlanetaryMethod(ReducerMethod):
     turning: Turning
     overcome: Turning
 
+    @override
     def read(self, measure: ReducerMeasure, deviated: Deviated, trials: Trials, known: dict[Hashable, Any]) -> Read:
-        """See ReducerMethod."""
         if measure.is_free_turn:
             turns = self.system.turns_at(measure, trials)
             values, found = self._lost(measure, deviated, turns)

@@ -3,6 +3,7 @@
 from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.scene.bases import MeasureSpec, Take
 from tol3d.strict import refused
@@ -57,8 +58,8 @@ class OverTurnSpec(MeasureSpec):
         return found
 
     @property
+    @override
     def gives_curve(self) -> bool:
-        """See MeasureEntry."""
         return self.taken == "curve"
 
     @property

@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink, pin_name
 from tol3d.gearing.model.brought import shaft_of
@@ -91,12 +92,12 @@ class ReducerLink(StatedLink):
         return np.ascontiguousarray(seen.angles / (2 * math.pi) * float(self.rate))
 
     @property
+    @override
     def held(self) -> str:
-        """See StatedLink."""
         return str(self.own.held)
 
+    @override
     def is_compiled(self) -> bool:
-        """See StatedLink."""
         return all(solver.is_kept(self.own) for solver in self.alone.solvers.values())
 
     # its play ---------------------------------------------------------------------------------------
@@ -158,8 +159,8 @@ class ReducerLink(StatedLink):
             turns = self.output_turns(piece)[:, 0]
             yield piece, turns, self.slopes_at(self.deviated(piece, turns), turns)
 
+    @override
     def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
-        """See StatedLink."""
         pieces = []
         for piece, turns, slopes in self.slopes(seen):
             units = [np.tile(unit, (len(piece), 1)) for unit in np.eye(2)]
@@ -184,7 +185,7 @@ class ReducerLink(StatedLink):
     def offsets(self) -> Mapping[str, Acts]:
         """Parts that a shaft with run-out moves, and the effect of that."""
 
+    @override
     def offset_by(self, contributor: str, part: str) -> Self | None:
-        """See StatedLink."""
         acts = self.offsets.get(part)
         return None if acts is None else replace(self, actions=(*self.actions, (contributor, acts)))

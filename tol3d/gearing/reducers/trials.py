@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from tol3d.gearing.reducers.deviations import Acts, Deviations
 from tol3d.numerics.arrays import Array
@@ -134,8 +135,8 @@ class ReducerTrials(OutputSystem):
         """Turns of the output (trials,) at the only position of a measure."""
         return np.broadcast_to(self.turns(measure.positions, trials), (len(trials), 1))[:, 0]
 
+    @override
     def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """See System."""
         own: ReducerMeasure = self.read[measure.name]
         order = {"order": int(own.spectrum.orders[0])} if own.take == "harmonic" and own.spectrum else {}
         counted = {} if own.deflection is None else {"deflection_um": round(1e3 * own.deflection, 9)}

@@ -5,6 +5,7 @@ from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field
+from typing_extensions import override
 
 from tol3d.errors import InputError
 from tol3d.files import Files
@@ -46,8 +47,8 @@ class Constant(Distribution):
         """See Distribution: its value."""
         return replace(self, value=size)
 
+    @override
     def shifted(self, by: float) -> Self:
-        """See Distribution."""
         return replace(self, value=self.value + by)
 
     def mapped(self, place: Place, factor: float) -> Self:

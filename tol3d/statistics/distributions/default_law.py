@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from typing import Annotated, Literal
 
 from pydantic import Field
+from typing_extensions import override
 
 from tol3d.statistics.distributions.base import DistributionSpec
 from tol3d.statistics.distributions.normal import NormalSpec
@@ -30,8 +31,8 @@ class NormalBetween(LimitLaw):
     kind: Literal["normal"]
     sigmas: float = Field(default=3.0, gt=0.0, description="of which the limits are that far from the middle")
 
+    @override
     def between(self, lower: Quantity, upper: Quantity) -> DistributionSpec:
-        """See LimitLaw."""
         return NormalSpec(kind="normal", lower=lower, upper=upper, sigmas=self.sigmas)
 
 
@@ -41,8 +42,8 @@ class TruncatedNormalBetween(LimitLaw):
     kind: Literal["truncated_normal"]
     sigmas: float = Field(default=3.0, gt=0.0, description="of which the limits are that far from the middle")
 
+    @override
     def between(self, lower: Quantity, upper: Quantity) -> DistributionSpec:
-        """See LimitLaw."""
         sigma = lower.like((upper.internal - lower.internal) / (2 * self.sigmas))
         return TruncatedNormalSpec(
             kind="truncated_normal", mean=_middle(lower, upper), sigma=sigma, lower=lower, upper=upper
@@ -54,8 +55,8 @@ class UniformBetween(LimitLaw):
 
     kind: Literal["uniform"]
 
+    @override
     def between(self, lower: Quantity, upper: Quantity) -> DistributionSpec:
-        """See LimitLaw."""
         return UniformSpec(kind="uniform", lower=lower, upper=upper)
 
 
@@ -64,8 +65,8 @@ class TriangularBetween(LimitLaw):
 
     kind: Literal["triangular"]
 
+    @override
     def between(self, lower: Quantity, upper: Quantity) -> DistributionSpec:
-        """See LimitLaw."""
         return TriangularSpec(kind="triangular", lower=lower, mode=_middle(lower, upper), upper=upper)
 
 

@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import Final, Protocol, Self
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.numerics.arrays import Array
 from tol3d.statistics.distributions.base import Distribution, Stays
@@ -59,8 +60,8 @@ class Derived(Distribution):
     scale: Scale
 
     @property
+    @override
     def words(self) -> str:
-        """See Distribution."""
         return f"{self.measured.words} of {self.scale.words}"
 
     @cached_property
@@ -93,13 +94,13 @@ class Derived(Distribution):
         return start + float(np.mean(bent)), variance
 
     @property
+    @override
     def mean(self) -> float:
-        """See Distribution."""
         return self._moments[0]
 
     @property
+    @override
     def variance(self) -> float:
-        """See Distribution."""
         return self._moments[1]
 
     def _ends(self, ends: tuple[float, float]) -> tuple[float, float]:
@@ -112,13 +113,13 @@ class Derived(Distribution):
         return None if self.measured.limits is None else self._ends(self.measured.limits)
 
     @property
+    @override
     def extremes(self) -> tuple[float, float]:
-        """See Distribution."""
         return self._ends(self.measured.extremes)
 
     @property
+    @override
     def pivot(self) -> float:
-        """See Distribution."""
         return float(self.scale.deviation(np.array([self.measured.pivot]))[0])
 
     def scaled(self, factor: float, about: float | None = None) -> Self:
@@ -130,12 +131,12 @@ class Derived(Distribution):
         """See Distribution: a limit is that of what is measured."""
         return replace(self, measured=self.measured.scaled_at(factor, stays))
 
+    @override
     def of_size(self, size: float) -> Self:
-        """See Distribution."""
         start, end = self.scale.measured(np.array([0.0, size])).tolist()
         return replace(self, measured=self.measured.of_size(abs(end - start)))
 
+    @override
     def within(self, low: float, high: float) -> Self:
-        """See Distribution."""
         ends = sorted(self.scale.measured(np.array([low, high])).tolist())
         return replace(self, measured=self.measured.within(*ends))

@@ -8,6 +8,7 @@ from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.errors import SceneError
 from tol3d.files import Files
@@ -72,8 +73,8 @@ class Piecewise(Distribution):
         """The first and the last knot, beyond which nothing is drawn."""
         return float(self.values[0]), float(self.values[-1])
 
+    @override
     def mapped(self, place: Place, factor: float) -> Self:
-        """See Distribution."""
         return replace(self, values=np.array([place(own) for own in self.values.tolist()]))
 
 
@@ -113,16 +114,16 @@ class Empirical(Distribution):
         return _spread(sample, width, narrow)
 
     @property
+    @override
     def words(self) -> str:
-        """See Distribution."""
         return f"empirical, {len(self.values)} values {self.draws.replace('_', ' ')}"
 
+    @override
     def ppf(self, u: Array) -> Array:
-        """See Piecewise."""
         return self._law.ppf(u)
 
+    @override
     def cdf(self, x: Array) -> Array:
-        """See Piecewise."""
         return self._law.cdf(x)
 
     @property
@@ -140,8 +141,8 @@ class Empirical(Distribution):
         """Ends of the law, beyond which nothing is drawn."""
         return self._law.extremes
 
+    @override
     def mapped(self, place: Place, factor: float) -> Self:
-        """See Distribution."""
         sample = np.array([place(own) for own in self.values.tolist()])
         sample.flags.writeable = False
         return replace(self, values=sample, knots=self._law.mapped(place, factor))

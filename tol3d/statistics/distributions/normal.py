@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
@@ -99,8 +100,8 @@ class NormalSpec(DistributionSpec):
             raise refused("kind", "either lower and upper, or mean and sigma", got)
         return self
 
+    @override
     def numbers(self, law: Distribution) -> Mapping[str, float]:
-        """See DistributionSpec."""
         if not isinstance(law, Normal):
             return super().numbers(law)
         low, high = law.limits

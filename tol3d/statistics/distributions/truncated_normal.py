@@ -8,6 +8,7 @@ from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
@@ -74,8 +75,8 @@ class TruncatedNormal(Distribution):
         """Lower and upper, as stated."""
         return self.lower, self.upper
 
+    @override
     def mapped(self, place: Place, factor: float) -> Self:
-        """See Distribution."""
         location, scale = place(self.location), factor * self.scale
         return replace(self, location=location, scale=scale, lower=place(self.lower), upper=place(self.upper))
 
@@ -102,8 +103,8 @@ class TruncatedNormalSpec(DistributionSpec):
             raise refused("lower", expected, f"{self.lower} to {self.upper}, which keep {kept:.2g}")
         return self
 
+    @override
     def numbers(self, law: Distribution) -> Mapping[str, float]:
-        """See DistributionSpec."""
         if not isinstance(law, TruncatedNormal):
             return super().numbers(law)
         low, high = law.limits

@@ -5,6 +5,7 @@ from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
@@ -42,8 +43,8 @@ class Uniform(Distribution):
         """Lower and upper, as stated."""
         return self.lower, self.upper
 
+    @override
     def mapped(self, place: Place, factor: float) -> Self:
-        """See Distribution."""
         return replace(self, lower=place(self.lower), upper=place(self.upper))
 
 

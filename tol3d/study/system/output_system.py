@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.contributor import Contributor
@@ -34,8 +35,8 @@ class OutputSystem(PlainSystem):
     implausible: tuple[str, ...] = field(default=(), kw_only=True)
 
     @property
+    @override
     def warnings(self) -> tuple[str, ...]:  # type: ignore[override]
-        """See System."""
         return self.implausible
 
     @property

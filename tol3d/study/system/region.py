@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.numerics.arrays import Array
 from tol3d.statistics.distributions import DeviationLaw, Distribution
@@ -72,12 +73,12 @@ class Box(Region):
     low: Array
     high: Array
 
+    @override
     def furthest(self, slopes: Array) -> Array:
-        """See Region."""
         return np.where(slopes > 0.0, self.high, self.low)
 
+    @override
     def confined(self, points: Array) -> Array:
-        """See Region."""
         return np.clip(points, self.low, self.high)
 
     def halves(self, slopes: Array) -> Array:
@@ -92,12 +93,12 @@ class Round(Region):
     inner: float
     outer: float
 
+    @override
     def furthest(self, slopes: Array) -> Array:
-        """See Region."""
         return self.outer * _directions(slopes)
 
+    @override
     def confined(self, points: Array) -> Array:
-        """See Region."""
         sizes = np.linalg.norm(points, axis=-1, keepdims=True)
         return np.asarray(np.clip(sizes, self.inner, self.outer) * _directions(points))
 
@@ -110,12 +111,12 @@ class Along(Region):
     low: float
     high: float
 
+    @override
     def furthest(self, slopes: Array) -> Array:
-        """See Region."""
         return np.where(slopes @ self.direction > 0.0, self.high, self.low)[:, None] * self.direction
 
+    @override
     def confined(self, points: Array) -> Array:
-        """See Region."""
         return np.clip(points @ self.direction, self.low, self.high)[:, None] * self.direction
 
 
@@ -129,17 +130,17 @@ class EachIn(Region):
     def __post_init__(self) -> None:
         object.__setattr__(self, "fills", self.each.fills)
 
+    @override
     def furthest(self, slopes: Array) -> Array:
-        """See Region."""
         return self.each.furthest(slopes.reshape(len(slopes) * self.count, -1)).reshape(slopes.shape)
 
+    @override
     def confined(self, points: Array) -> Array:
-        """See Region."""
         return self.each.confined(points.reshape(len(points) * self.count, -1)).reshape(points.shape)
 
     @property
+    @override
     def has_nearest(self) -> bool:
-        """See Region."""
         return self.each.has_nearest
 
     def halves(self, slopes: Array) -> Array:
@@ -157,8 +158,8 @@ class Asked(Region):
     def __post_init__(self) -> None:
         object.__setattr__(self, "fills", isinstance(self.draw, Filled) and self.draw.fills)
 
+    @override
     def furthest(self, slopes: Array) -> Array:
-        """See Region."""
         return np.array([self._furthest(slope) for slope in slopes]).reshape(slopes.shape)
 
     def _furthest(self, slopes: Array) -> Array:
@@ -166,8 +167,8 @@ class Asked(Region):
         return np.asarray(ends[int(np.argmax(ends @ slopes))])
 
     @property
+    @override
     def has_nearest(self) -> bool:
-        """See Region."""
         return False
 
 

@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
+from typing_extensions import override
 
 from tol3d.assembly.grammar.builders.builder_spec import BuilderSpec
 from tol3d.assembly.grammar.feature_name import OwnName
@@ -43,8 +44,8 @@ class BallScrewSpec(BuilderSpec):
     journal: JournalSpec | None = Field(default=None, description="at either end; default: none")
 
     @property
+    @override
     def shape(self) -> BallScrew:
-        """See BuilderSpec."""
         journal = None if self.journal is None else (self.journal.diameter.internal, self.journal.length.internal)
         return BallScrew(self.diameter.internal, self.length.internal, journal)
 
@@ -63,8 +64,8 @@ class BallSocketSpec(BuilderSpec):
     height: Length = Field(description="from the bottom to the centre of the seat, along z")
 
     @property
+    @override
     def shape(self) -> BallSocket:
-        """See BuilderSpec."""
         mouth = self.ball_diameter if self.mouth is None else self.mouth
         return BallSocket(self.ball_diameter.internal, mouth.internal, self.diameter.internal, self.height.internal)
 
@@ -83,8 +84,8 @@ class NutSpec(BuilderSpec):
     ball_diameter: Length = Field(description="of the seat")
 
     @property
+    @override
     def shape(self) -> Nut:
-        """See BuilderSpec."""
         return Nut(
             self.diameter.internal,
             self.length.internal,
@@ -106,8 +107,8 @@ class RodSpec(BuilderSpec):
     ball_diameter: Length = Field(description="of both balls")
 
     @property
+    @override
     def shape(self) -> Rod:
-        """See BuilderSpec."""
         return Rod(self.length.internal, self.diameter.internal, self.ball_diameter.internal)
 
 
@@ -132,8 +133,8 @@ class ThrustRingSpec(BuilderSpec):
     ears: Mapping[OwnName, EarSpec] = Field(min_length=1, description="by name, all alike")
 
     @property
+    @override
     def shape(self) -> ThrustRing:
-        """See BuilderSpec."""
         return ThrustRing(
             self.inner_diameter.internal,
             self.outer_diameter.internal,
@@ -174,8 +175,8 @@ class SphericalGearSpec(BuilderSpec):
     bore: BlindBoreSpec | None = Field(default=None, description="default: none")
 
     @property
+    @override
     def shape(self) -> SphericalGear:
-        """See BuilderSpec."""
         return SphericalGear(
             self.teeth,
             self.module.internal,

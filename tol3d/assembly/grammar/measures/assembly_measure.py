@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import ClassVar, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
@@ -40,13 +41,13 @@ class AssemblyMeasureSpec(MeasureEntry):
     )
 
     @property
+    @override
     def gives_curve(self) -> bool:
-        """See MeasureEntry."""
         return False
 
     @property
+    @override
     def several_positions(self) -> bool:
-        """See MeasureEntry."""
         return False
 
     @classmethod
@@ -81,13 +82,13 @@ class TimedSpec(AssemblyMeasureSpec):
     take: Take = Field(default="value", description="of a path: min, max, range or curve")
 
     @property
+    @override
     def gives_curve(self) -> bool:
-        """See MeasureEntry."""
         return self.take == "curve"
 
     @property
+    @override
     def several_positions(self) -> bool:
-        """See MeasureEntry."""
         return self.over is not None
 
     @property

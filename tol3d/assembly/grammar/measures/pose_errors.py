@@ -5,6 +5,7 @@ from typing import ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec, TimedSpec
@@ -128,8 +129,8 @@ class DirectionErrorSpec(TimedSpec):
         return Measured(self.reads_along, (self.twin, self.of, self.against), across)
 
     @property
+    @override
     def parts_read(self) -> Sequence[str]:
-        """See TimedSpec."""
         others = [self.from_] if self.from_ else []
         return (*others, part_of(self.of), *([part_of(self.against)] if self.against else []))
 

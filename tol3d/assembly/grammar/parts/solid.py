@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Final, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.assembly.grammar.builders import BuilderUnion, OwnFileSpec
 from tol3d.assembly.grammar.feature_name import OwnName
@@ -142,8 +143,8 @@ class StepSpec(SolidSpec):
     )
 
     @property
+    @override
     def has_solid(self) -> bool:
-        """See PartSpec."""
         return True
 
     @property

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
+from typing_extensions import override
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
@@ -46,8 +47,8 @@ class LocationSpec(FeatureTolerance):
             raise refused("law", f"how deviations lie in the zone, which drawings leave open: {laws}", "none")
         return value
 
+    @override
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
-        """See ToleranceEntry."""
         return scaled_in_zone(self, factor, stays, files)
 
     @property
@@ -180,8 +181,8 @@ class OrientationSpec(Modified, FeatureTolerance):
     )
     datums: Datums
 
+    @override
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
-        """See ToleranceEntry."""
         return scaled_in_zone(self, factor, stays, files)
 
     @property
@@ -242,8 +243,8 @@ class FormSpec(FeatureTolerance):
     zone: ZoneSpec = Field(description="width within which the surface or line lies")
     law: LawUnion | None = Field(default=None, description="of the points that touch; default: they lie on the shape")
 
+    @override
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
-        """See ToleranceEntry."""
         return scaled_in_zone(self, factor, stays, files)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
@@ -68,22 +69,22 @@ class CloseLoopSpec(AssemblyMoveSpec):
     )
 
     @property
+    @override
     def parts_placed(self) -> Sequence[tuple[KeyPath, str]]:
-        """See AssemblyMoveSpec."""
         return [(("bodies", k), body) for k, body in enumerate(self.bodies)]
 
+    @override
     def targets(self) -> Iterator[tuple[KeyPath, FeatureName]]:
-        """See AssemblyMoveSpec."""
         yield from self._named()
 
     @property
+    @override
     def pose_names(self) -> Sequence[str]:
-        """See AssemblyMoveSpec."""
         return tuple(name for name, own in self.poses.items() if not isinstance(own, PathSpec))
 
     @property
+    @override
     def path_names(self) -> Mapping[str, Sequence[str]]:
-        """See AssemblyMoveSpec."""
         paths = ((name, own) for name, own in self.poses.items() if isinstance(own, PathSpec))
         return {name: [f"{name}{STEP}{k}" for k in range(own.steps + 1)] for name, own in paths}
 

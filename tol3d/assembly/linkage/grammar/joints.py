@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.assembly.grammar.feature_name import FeatureName, part_of
 from tol3d.scene.listed import listed
@@ -113,8 +114,8 @@ class BallSpec(JointSpec):
     clearance: ClearanceSpec | None = Field(default=None, description="between ball and socket; default: none")
 
     @property
+    @override
     def room(self) -> ClearanceSpec | None:
-        """See JointSpec."""
         return self.clearance
 
 
@@ -126,8 +127,8 @@ class _AxialSpec(JointSpec):
     play: PlaySpec | None = Field(default=None, description="between pin and bore; default: none")
 
     @property
+    @override
     def room(self) -> PlaySpec | None:
-        """See JointSpec."""
         return self.play
 
 
@@ -185,8 +186,8 @@ class RollingSpec(JointSpec):
     carrier: str = Field(description="the part on which the gear after sits, or a feature of it, such as ring.seat")
 
     @property
+    @override
     def features(self) -> Iterator[tuple[KeyPath, FeatureName]]:
-        """See JointSpec."""
         yield from super().features
         if "." in self.carrier:
             yield ("carrier",), self.carrier

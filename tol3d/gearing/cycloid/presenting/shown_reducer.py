@@ -7,6 +7,7 @@ from functools import cached_property, partial
 from typing import ClassVar, Final
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.cad.solids import PosedGear, PosedPart, PosedShape
 from tol3d.errors import InputError
@@ -43,8 +44,8 @@ class RVDisplay(ReducerDisplay):
     shown: ShownReducer
 
     @property
+    @override
     def bodies(self) -> tuple[Body, ...]:
-        """See ReducerDisplay."""
         return tuple(map(_body, self.shown.shapes.placed(self.shown.seated.places)))
 
     @cached_property
@@ -55,8 +56,8 @@ class RVDisplay(ReducerDisplay):
         joined = Body(PINS, np.eye(4), partial(_joined, pins), None, COLOURS["pin"])
         return World(self.shown.own.name, (*(body for body in bodies if not _is_pin(body.name)), joined))
 
+    @override
     def frames(self, states: Sequence[SeatedReducer], name: str) -> Iterator[Frame]:
-        """See ReducerDisplay."""
         shown, still = self.shown, {"sun"} if name == SWING else set()
         for state, angle in zip(states, carrier_angles(states), strict=True):
             parts = shown.shapes.placed(state.places)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.gearing.cycloid.model.stage import Deviated
 from tol3d.gearing.cycloid.reducer.rv_set import RVSet
@@ -99,8 +100,8 @@ class RVDeviated(Deviations):
             np.zeros((trials, own.cranks)),
         )
 
+    @override
     def reached(self, own: RVSet, acts: Acts) -> tuple[Array, Along]:
-        """See Deviations."""
         reach = EFFECTS[acts.effect]
         array: Array = getattr(self if hasattr(self, reach.array) else self.stage, reach.array)
         if acts.effect == RING:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.gearing.cycloid.first_order.linear import LinearStage
 from tol3d.gearing.cycloid.reducer.trials import RVMethod, RVTrials
@@ -39,12 +40,12 @@ class BentTurning(LinearTurning):
     """First-order turning with the bend of the path of each pin, and with cranks as the first stage leads them."""
 
     @property
+    @override
     def stage(self) -> LinearStage:
-        """See LinearTurning."""
         return BentStage.of(self.own)
 
+    @override
     def phis(self, turns: Array, beta: Array) -> Array:
-        """See LinearTurning."""
         return led_angles(self.own, turns, beta)
 
 

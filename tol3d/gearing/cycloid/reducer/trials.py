@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from tol3d.gearing.cycloid.reducer.deviated import RVDeviated
 from tol3d.gearing.cycloid.reducer.rv_set import RVSet
@@ -49,8 +50,8 @@ class RVTrials(ReducerTrials):
         both = own.reading == "lost motion" or own.positions.over == "turn"
         return (2 if both else 1) * errors / lever * measure.per_internal
 
+    @override
     def chord_bound(self, measure: Measure, chord_error: float) -> float:
-        """See System."""
         return self.gap_bound(measure, chord_error)
 
 
@@ -61,8 +62,8 @@ class RVMethod(ReducerMethod):
     system: RVTrials
     turning: Turning
 
+    @override
     def read(self, measure: ReducerMeasure, deviated: RVDeviated, trials: Trials, known: dict[Hashable, Any]) -> Read:
-        """See ReducerMethod."""
         forwards = self._turned(measure, deviated, trials, measure.load, known)
         values, codes = forwards.turns, _worst(forwards)
         if forwards.near is not None and measure.counts:

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Annotated, Final, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.errors import GeometryError, InputError
 from tol3d.files import Files
@@ -60,8 +61,8 @@ class ToothRunOutSpec(TeethOffAxisSpec):
             if not math.isclose(Quantity.parse(drawn[key]).internal, size, rel_tol=SAME_LENGTH):
                 yield Contradiction(("distribution", key), f"{size:g} mm, as {self.of!r} has it", repr(str(drawn[key])))
 
+    @override
     def scale_of(self, gear: Gear) -> Scale:
-        """See GearToleranceSpec."""
         return ECCENTRICITY
 
     def meaning(self, nominal: Nominal) -> Meaning:

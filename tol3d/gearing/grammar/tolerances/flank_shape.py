@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Annotated, Final, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.errors import GeometryError, InputError
 from tol3d.files import Files
@@ -222,8 +223,8 @@ class FlankShapeSpec(FlankToleranceSpec):
     def _names(self, gear: SpurGear) -> tuple[str, ...]:
         return tooth_names(gear.teeth, self.sides) if self.each == "tooth" else self.sides
 
+    @override
     def draw(self, gear: SpurGear, files: Files) -> Draw:
-        """See FlankToleranceSpec."""
         names = self._names(gear)
         if isinstance(self.law, GivenShapeSpec):
             return self._given(self.law, names)
@@ -289,12 +290,12 @@ class ProfileSlopeSpec(FlankShapeSpec):
         default=None, description="diameters it counts between; by default from the active profile's begin to the tip"
     )
 
+    @override
     def of_class(self, limits: FlankTolerances) -> float:
-        """See FlankShapeSpec."""
         return limits.profile_slope
 
+    @override
     def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
-        """See FlankToleranceSpec."""
         mix = profile_part(self.range, gear, active_roll, 1.0).slope
         return FlankDeviation(self.of, SLOPE, self.places(gear), mix=mix)
 
@@ -321,12 +322,12 @@ class ProfileFormSpec(FlankShapeSpec):
             raise refused("waves", expected, got)
         return self
 
+    @override
     def of_class(self, limits: FlankTolerances) -> float:
-        """See FlankShapeSpec."""
         return limits.profile_form
 
+    @override
     def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
-        """See FlankToleranceSpec."""
         part, places = profile_part(self.range, gear, active_roll, FORM_SHARE), self.places(gear)
         if self.waves is None:
             return FlankDeviation(self.of, FORM, places, mix=part.barrel)
@@ -345,11 +346,11 @@ class HelixSlopeSpec(FlankShapeSpec):
         default=None, description="heights over the lower end of the face it counts between; by default the whole face"
     )
 
+    @override
     def of_class(self, limits: FlankTolerances) -> float:
-        """See FlankShapeSpec."""
         return limits.helix_slope
 
+    @override
     def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
-        """See FlankToleranceSpec."""
         level, times = face_part(self.range, gear).slope
         return FlankDeviation(self.of, HELIX, self.places(gear), mix=(level, 0.0, 0.0, times))

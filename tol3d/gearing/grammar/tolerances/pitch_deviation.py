@@ -6,6 +6,7 @@ from itertools import accumulate, chain
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.errors import GeometryError, InputError, SceneError
 from tol3d.files import Files
@@ -198,8 +199,8 @@ class PitchDeviationSpec(FlankToleranceSpec):
         wider = {name: own.like(factor * own.internal) for name, own in both.items()}
         return self.model_copy(update={"limits": limits.model_copy(update=wider)})
 
+    @override
     def draw(self, gear: SpurGear, files: Files) -> Draw:
-        """See FlankToleranceSpec."""
         if isinstance(self.law, GivenSpec):
             return self._given(self.law, gear)
         if isinstance(self.law, PitchRecordSpec):

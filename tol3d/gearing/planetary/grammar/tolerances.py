@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import ClassVar, Literal, Self
 
 from pydantic import Field
+from typing_extensions import override
 
 from tol3d.assembly.grammar.zone import LawUnion, scaled_in_zone
 from tol3d.files import Files
@@ -41,8 +42,8 @@ class BorePositionSpec(AboutOne, ToleranceEntry):
     zone: RoundZoneSpec = Field(description="zone of the drawing: a diameter")
     law: LawUnion
 
+    @override
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
-        """See ToleranceEntry."""
         return scaled_in_zone(self, factor, stays, files)
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Final
 
 import numpy as np
+from typing_extensions import override
 
 from tol3d.cad.solids import PosedBody
 from tol3d.cad.solids.posed_gear import ArmBody
@@ -75,8 +76,8 @@ class PlanetaryDisplay(ReducerDisplay):
     shown: ShownSet
 
     @property
+    @override
     def bodies(self) -> tuple[Body, ...]:
-        """See ReducerDisplay."""
         return (*bodies_of(self.shown), *arms_of(self.shown))
 
     @property
@@ -85,8 +86,8 @@ class PlanetaryDisplay(ReducerDisplay):
         opening = {OPENING: (opened, 24)} if self.shown.own.springs else {}
         return {**opening, TURN: (turned, 72), SWING: (swung, 16)}
 
+    @override
     def frames(self, states: Sequence[MovedSet], name: str) -> Iterator[Frame]:
-        """See ReducerDisplay."""
         own = self.shown.own
         levels = {body.name: float(body.world_from_part[2, 3]) for body in self.seen.bodies}
         for state in states:
@@ -100,8 +101,8 @@ class PlanetaryDisplay(ReducerDisplay):
             )
             yield Frame(_caption(own, state, states, name), poses, marks)
 
+    @override
     def shots(self, states: Sequence[MovedSet], name: str) -> Iterator[Shot]:
-        """See ReducerDisplay."""
         return _steps(self.shown, self.seen) if name == TURN else _close_ups(self.shown, self.seen)
 
 
