@@ -10,7 +10,7 @@
     statistics   of one block, or several   study/tallies/tally.py       Tally           (sample.py: one method's)
     task         what workers run           study/results/task.py        Task            (execution/pools.py: who runs)
     blocks       run, kept, folded in order study/execution/folding.py   run_blocks
-    findings     tally -> summary           study/results/findings.py    findings        (budget.py: how many builds)
+    findings     tally -> summary           study/results/findings.py    findings
     witness      some trials again          study/results/witness.py     witness_summary
     explanation  why both methods differ    study/results/agreement/     explanations
     result       the run on disk            study/runs/run.py            Run             (writer.py, occupant.py)
@@ -27,7 +27,7 @@ Theirs:
     meshing      gaps -> seated meshes      gearing/meshing/         Meshing.seat      (engines/ give the gaps)
     measures     seated meshes -> values    gearing/meshing/seats.py measure_backlash
     stack-up     the second method          gearing/stack_up/        analytic_backlash
-    play         backlashes, together       gearing/play/            Play              (load_paths.py: in parallel)
+    play         backlashes, together       gearing/play/            Play              (loops too)
 
 The exact engine goes from builds to readings in one compiled kernel (engines/exact/: foot -> nearest -> flank_contact
 -> rows), to the same result as by its gaps. `builds/rates.py` and `slopes/` take the derivatives of measures through

@@ -2,8 +2,7 @@
 
 What both methods make of nominal geometry depends on the assembly alone, not on the laws of its contributors. A scene
 of which a tolerance was edited has the same assembly, unless the tolerance's width is part of a matrix or of a gauge.
-
-Relations that are not met nominally: the freedoms left by earlier ones do not bring both features together.
+Relations that are not met nominally are found here too.
 """
 
 from collections.abc import Iterator, Mapping

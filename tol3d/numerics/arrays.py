@@ -1,7 +1,4 @@
-"""Types of arrays, and products whose bits do not depend on the number of trials.
-
-Arrays of trials that belong together, such as all deviations of a mechanism.
-"""
+"""Types of arrays, arrays of trials that belong together, and products whose bits do not depend on the number of trials."""
 
 from collections.abc import Callable
 from dataclasses import fields

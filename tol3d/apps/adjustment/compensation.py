@@ -1,16 +1,10 @@
-"""The motor's correction when the load changes side: its size, and the remaining lost motion.
+"""The motor's correction when the load changes side: its size, the remaining lost motion, and a tip over its swing.
 
 A train whose load changes side goes over to the other flanks, and its output turns by the lost motion. The motor makes
 good for it by a turn that is known beforehand: that of the batch's mean builds, or of this robot's own mean. A reducer
 of which only the maximum is known is left out of it, as in Jiang et al. 2024, section 4; it remains whole.
 
 Angles here are in minutes of arc and tips in mm, as in columns and in summary.json.
-
-The turn of the motor that makes good for the mean lost motion of a train, and the sum of highs that it leaves.
-
-Angles are in minutes of arc, as in columns and in summary.json.
-
-A tip over the swing of its arm: its error with and without the motor's correction, and which flanks work.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

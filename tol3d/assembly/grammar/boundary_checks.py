@@ -78,12 +78,12 @@ def is_square(normal: Array, axis: Array) -> bool:
 def shifts_alone(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> bool:
     """True if the gauge of the last datum only shifts: its hole or pin is perpendicular to the orienting plane."""
     known = drawing.features[part]
-    gauged = [own.gauge is not None for own in datums]
-    if gauged != [False, True] or any(own.is_several for own in datums):
+    gauged = [datum.gauge is not None for datum in datums]
+    if gauged != [False, True] or any(datum.is_several for datum in datums):
         return False
     if not _has_place(drawing, f"{part}.{datums[1].features[0]}"):
         return False  # nothing orients it to the plane
-    plane, hole = (known.get(own.features[0]) for own in datums)
+    plane, hole = (known.get(datum.features[0]) for datum in datums)
     if plane is None or hole is None or (plane.kind, hole.kind) != ("plane", "cylinder"):
         return False
     return is_square(plane.frame[:3, 2], hole.frame[:3, 2])
@@ -147,7 +147,7 @@ def _has_place(drawing: Drawing, feature: str) -> bool:
 
 
 def _names(datums: Sequence[DatumSpec]) -> list[tuple[str, ...]]:
-    return [own.features for own in datums]
+    return [datum.features for datum in datums]
 
 
 def _orients_only(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) -> bool:
@@ -174,7 +174,7 @@ def _unfit_feature(
     between = [
         own for own, after in zip(datums[k + 1 :], datums[k + 2 :], strict=False) if own.gauge is None and after.gauge
     ]
-    later = [own for own in datums[k + 1 :] if own.gauge is None]
+    later = [datum for datum in datums[k + 1 :] if datum.gauge is None]
     unfit = [name for own in later for name in own.features if own.is_several or not _may_be_later(drawing, part, name)]
     to = ", ".join("-".join(earlier.features) for earlier in datums[:k])
     if between:

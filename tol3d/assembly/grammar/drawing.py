@@ -79,8 +79,8 @@ class Drawing:
         found: dict[str, dict[str, FeatureUnion]] = {}
         for name in solids:
             found[name] = {}
-            for own in reversed(likes(name, solids)):
-                found[name].update(solids[own].features)
+            for like in reversed(likes(name, solids)):
+                found[name].update(solids[like].features)
         return found
 
     @cached_property
@@ -92,7 +92,7 @@ class Drawing:
         """
         count = 0
         for part, entries in self.written.items():
-            count += sum(own.pattern.count if own.pattern else 1 for own in entries.values())
+            count += sum(entry.pattern.count if entry.pattern else 1 for entry in entries.values())
             if count > MOST_FEATURES:
                 words = f"expected at most {MOST_FEATURES} features in a scene, got {count} up to here"
                 raise self.scene.refuse(("parts", part), words)

@@ -295,7 +295,7 @@ def _names(drawing: Drawing) -> Iterator[Problem]:
 def cyclic_datums(drawing: Drawing) -> Iterator[Problem]:
     """Features whose datums depend on the features themselves."""
     after = {
-        name: {f"{part_of(name)}.{own}" for datum in datums for own in datum.features}
+        name: {f"{part_of(name)}.{feature}" for datum in datums for feature in datum.features}
         for name, datums in drawing.parents()
     }
     waiting = dict(after)
@@ -370,7 +370,7 @@ def features_far_off(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Features that lie more than ten metres from all others of their part."""
     drawing = Drawing(scene)
     for part, features in drawing.features.items():
-        places = np.array([own.frame[:3, 3] for own in features.values()])
+        places = np.array([feature.frame[:3, 3] for feature in features.values()])
         for name, place in zip(features, places, strict=True):
             others = np.sort(np.linalg.norm(places - place, axis=1))[1:]
             if others.size and others[0] > FARTHEST and np.linalg.norm(place) >= np.linalg.norm(places, axis=1).max():

@@ -71,4 +71,4 @@ def of_total_run_out(forms: Forms, shape: Shape, room: float) -> float:
 
 
 def _least(forms: Forms, shape: Shape, room: float, counts: Callable[..., bool]) -> float:
-    return min((whole_form(own, shape, room) for own in forms if counts(own)), default=0.0)
+    return min((whole_form(form, shape, room) for form in forms if counts(form)), default=0.0)

@@ -92,7 +92,7 @@ def unfit_holes(scene: Scene) -> Iterator[Problem]:
     for name, spec in scene.measures.items():
         if not isinstance(spec, VirtualClearanceSpec):
             continue
-        known = [own for own in spec.holes if own in drawing.names and drawing.kind(own).kind == "cylinder"]
+        known = [hole for hole in spec.holes if hole in drawing.names and drawing.kind(hole).kind == "cylinder"]
         axes = {own: poses[part_of(own)] @ drawing.kind(own).frame[:3, 2] for own in known}
         for k, own in enumerate(spec.holes):
             feature = drawing.kind(own) if own in known else None
@@ -111,7 +111,7 @@ def unfit_patterns(scene: Scene) -> Iterator[Problem]:
     for name, spec in scene.measures.items():
         if not isinstance(spec, InspectedPatternSpec) or not set(spec.features) <= set(drawing.names):
             continue
-        frames = [drawing.kind(own).frame for own in spec.features]
+        frames = [drawing.kind(feature).frame for feature in spec.features]
         axis, start = frames[0][:3, 2], frames[0][:3, 3]
         for k, (own, frame) in enumerate(zip(spec.features, frames, strict=True)):
             if drawing.kind(own).kind in AXES and _between(axis, frame[:3, 2]) > PARALLEL:

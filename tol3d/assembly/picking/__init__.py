@@ -1,9 +1,7 @@
 """Features that a scene picks from the solids of its parts: their numbers, looked up once when the scene is read.
 
-settled        a scene with all numbers, and what was found
-agreement      numbers that a scene states beside a face, checked against it
+settled        a scene with all numbers, and what was found; stated numbers are checked against their faces
 kept_picks     what was found, as a file that runs keep
-own_builders   programs of the user, run only where that is allowed
 step_picks     features that are selected on parts from STEP files
 """
 

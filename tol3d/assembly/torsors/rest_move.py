@@ -124,7 +124,7 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> World:
     rows, values = (np.concatenate(each) for each in zip(*contacts, strict=True))
     part = world.assembly.part[move.part]
     points = [world.origin(pair.moving) for pair in move.pairs]
-    points += [world.origin(name) for own in move.relations for name in (own.moving, own.target)]
+    points += [world.origin(name) for relation in move.relations for name in (relation.moving, relation.target)]
     freedoms = Freedoms(part.pose[:3, 3], points, world.columns.count)
     take_relations(freedoms, move, world)
     before = rows @ freedoms.torsor
@@ -147,7 +147,7 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> World:
             _refuse(move, freedoms.left @ seen.T @ _given_way(matrix, seen @ pull)[:, None])
     if not any(np.any(corner.loads < NONE) for corner in corners[0]):
         corners = corners[:1]  # it never rocks
-    found = world.columns.made_by(OneSided(before - values, matrix, tuple(tuple(own) for own in corners)))
+    found = world.columns.made_by(OneSided(before - values, matrix, tuple(tuple(corner) for corner in corners)))
     back = np.linalg.pinv(matrix)
     freedoms.take(back @ rows, found + back @ before)
     freedoms.settle(np.mean([world.origin(pair.moving) for pair in move.pairs], axis=0))

@@ -145,15 +145,15 @@ def _first_stage(scene: Scene, name: str, spec: RVReducerSpec, distance: float) 
     return FirstStage(spec.sun, spec.planet, pair)
 
 
-def _implausible(scene: Scene, own: RVSet) -> tuple[str, ...]:
+def _implausible(scene: Scene, rv_set: RVSet) -> tuple[str, ...]:
     """Warnings of the gears before the cycloid stage.
 
     Raises:
         SceneError: a tooth is thinned until nothing is left of its tip.
     """
-    if own.first is None:
+    if rv_set.first is None:
         return ()
-    gears = {name: own.first.gear(name) for name in (own.first.sun, own.first.planet)}
+    gears = {name: rv_set.first.gear(name) for name in (rv_set.first.sun, rv_set.first.planet)}
     return tuple(implausible_teeth(scene, gears))
 
 

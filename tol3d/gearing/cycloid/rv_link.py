@@ -101,13 +101,13 @@ class RVLink(ReducerLink):
 
     def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
         """Its cycloid stage by formula; see StatedLink."""
-        known = [each for each in contributors if each.name in self.acts]
+        known = [contributor for contributor in contributors if contributor.name in self.acts]
         found = stages_by_formula(self.own, self.acts, known)
         return {"cycloid_stages": found[self.name]} if found else {}
 
     def problems(self, mean: LinkTrials) -> Iterator[tuple[KeyPath, str]]:
         """Lobes and pins, or teeth, that interfere at the mean build."""
-        known = [each for each in mean.contributors if each.name in self.acts]
+        known = [contributor for contributor in mean.contributors if contributor.name in self.acts]
         return problems_at(self.own, self.acts, known, self.deviated(mean, np.zeros(len(mean))))
 
     def shown(self, seen: LinkTrials) -> ShownReducer:
@@ -129,9 +129,9 @@ def reducers_as_links(scene: Scene) -> Brought:
     return REDUCERS.as_links(scene, _link)
 
 
-def _link(scene: Scene, own: RVSet, move: RVReducerSpec, actions: Actions) -> RVLink:
+def _link(scene: Scene, rv_set: RVSet, move: RVReducerSpec, actions: Actions) -> RVLink:
     disc = scene.of(CycloidDiscSpec)[move.disc]
     hole = None if disc.hole is None else disc.hole.internal
-    sun_level = ShownReducer(own, RVDeviated.nothing(own, 1), 0.0, own.width, hole).shapes.sun_level
-    link = RVLink.between(scene, own, actions, {own.input: sun_level, own.output: 0.0})
+    sun_level = ShownReducer(rv_set, RVDeviated.nothing(rv_set, 1), 0.0, rv_set.width, hole).shapes.sun_level
+    link = RVLink.between(scene, rv_set, actions, {rv_set.input: sun_level, rv_set.output: 0.0})
     return replace(link, sun_level=sun_level, crank_hole=hole)

@@ -7,15 +7,13 @@ nobody draws, so that either side sees no more than its own kind.
 
 grammar/     the moves, worst errors over poses, and consistency checks
 nominal      where shafts lie in their bores, and the centre distances and azimuths that follow
-bores, pins  lines through bores, and pins of plates, trial by trial, by either method of the assembly
-centrals     effects of bores on the parts on the axis of a planetary set or a reducer
+bores, pins  lines through bores, and pins of plates with what they move on a carrier, by either method of the assembly
 chain        links, joints and poses on both methods; open_chains makes them of a scene, with the flanks that are loaded
-drives       which train turns which joint, and where its lost motion is read
-from_scene   all of it, from one scene
+             and the trains that turn its joints
+from_scene   all of it, from one scene; refuses deviations that would be counted twice
 joined       all together: whose columns are whose, how bores and joints follow from deviations
-turned       play of trains, each build and position once
+turned_joints  play of trains, each build and position once
 methods        placed, meshed, turned
-counted      deviations that would be counted twice
 closed_form  moments of a backlash, and of a part that trains turn
 system       all of it as one system
 presenting/  gears, housing and arms in one picture

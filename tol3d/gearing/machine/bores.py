@@ -26,9 +26,9 @@ def reading_name(shaft: str, point: int, direction: str) -> str:
     return f".{shaft}.{point}.{direction}"
 
 
-def twin_name(own: HousedShaft, point: int) -> str:
+def twin_name(housed_shaft: HousedShaft, point: int) -> str:
     """The point of the host where a point of an axis is nominally."""
-    return f"{own.host}..{own.shaft} {point}"
+    return f"{housed_shaft.host}..{housed_shaft.shaft} {point}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,14 +47,17 @@ class Bores:
     def names(self) -> tuple[str, ...]:
         """The measures of the assembly that say where the axes lie."""
         return tuple(
-            reading_name(own.shaft, k, direction) for own in self.shafts for k in range(2) for direction in "xyz"
+            reading_name(shaft.shaft, k, direction) for shaft in self.shafts for k in range(2) for direction in "xyz"
         )
 
     @cached_property
     def lateral_names(self) -> tuple[str, ...]:
         """Names of the displacements across the axes, in the order of the columns."""
         return tuple(
-            reading_name(own.shaft, k, direction) for own in self.shafts for k in range(2) for direction in COMPONENTS
+            reading_name(shaft.shaft, k, direction)
+            for shaft in self.shafts
+            for k in range(2)
+            for direction in COMPONENTS
         )
 
     def exactly(self, read: Mapping[str, Array]) -> Array:
@@ -64,11 +67,11 @@ class Bores:
             read: by `names`, displacements (trials,) [mm].
         """
         found = []
-        for own in self.shafts:
+        for shaft in self.shafts:
             first, last = (
-                [np.asarray(read[reading_name(own.shaft, k, direction)]) for direction in "xyz"] for k in range(2)
+                [np.asarray(read[reading_name(shaft.shaft, k, direction)]) for direction in "xyz"] for k in range(2)
             )
-            low, high = (own.along(bore) for bore in own.bores)
+            low, high = (shaft.along(bore) for bore in shaft.bores)
             length = (high + last[2]) - (low + first[2])
             slopes = [(last[k] - first[k]) / length for k in range(2)]
             found += [first[k] - slopes[k] * first[2] for k in range(2)]
@@ -85,20 +88,20 @@ def bores_of(assembly: Assembly, shafts: Sequence[HousedShaft]) -> Bores:
     """An assembly with the points of the axes of shafts."""
     added: dict[str, list[Feature]] = {part.name: [] for part in assembly.parts}
     measures: dict[str, Measured] = {}
-    for own in shafts:
-        host = assembly.part[own.host]
+    for shaft in shafts:
+        host = assembly.part[shaft.host]
         into = np.linalg.inv(host.pose)
-        for k, bore in enumerate(own.bores):
-            frame = own.frame.copy()
+        for k, bore in enumerate(shaft.bores):
+            frame = shaft.frame.copy()
             frame[:3, 3] = bore.place
-            twin = Feature(twin_name(own, k), own.host, Point(), into @ frame, is_named=False)
-            added[own.host].append(twin)
+            twin = Feature(twin_name(shaft, k), shaft.host, Point(), into @ frame, is_named=False)
+            added[shaft.host].append(twin)
             actual = assembly.features[bore.feature]
             if bore.end is not None:
                 actual = _end_of(actual, bore.end)
                 added[actual.part].append(actual)
-            for direction, column in zip("xyz", (into[:3, :3] @ own.frame[:3, :3]).T, strict=True):
-                measures[reading_name(own.shaft, k, direction)] = Measured(
+            for direction, column in zip("xyz", (into[:3, :3] @ shaft.frame[:3, :3]).T, strict=True):
+                measures[reading_name(shaft.shaft, k, direction)] = Measured(
                     GapSpec.reads, (twin.name, actual.name), column
                 )
     parts = tuple(replace(part, features=(*part.features, *added[part.name])) for part in assembly.parts)

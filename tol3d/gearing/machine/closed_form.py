@@ -44,16 +44,22 @@ def closed_form(system: Joined, measure: GearMeasure, *, at_one_position: bool =
     """
     model = system.gears.model
     leaning = _leaning(model, measure)
-    group = [own for own in system.contributors if own.name in leaning or own.name in _moving(system)]
+    group = [
+        contributor
+        for contributor in system.contributors
+        if contributor.name in leaning or contributor.name in _moving(system)
+    ]
     net = bool(leaning & _leaning_bores(system))
     if system.bends(measure) or (net and any(reads_of(own) for own in group)):
         return None
-    drawn = tuple(own for own in system.drawn_by_gears if not (net and own.name in leaning))
+    drawn = tuple(
+        drawn_by_gear for drawn_by_gear in system.drawn_by_gears if not (net and drawn_by_gear.name in leaning)
+    )
     plain = replace(model, contributors=drawn)
     form = reference_form(plain, measure) if at_one_position else closed_form_of_gears(plain, measure)
     if form is None:
         return None
-    both = {own.name for own in system.drawn.contributors} & {own.name for own in drawn}
+    both = {contributor.name for contributor in system.drawn.contributors} & {own.name for own in drawn}
     direct = {share.name: share.coefficient for share in form.shares if share.name in both}
     shares = [share for share in form.shares if share.name not in both]
     shares += _by_net(system, measure, group, direct) if net else _linear(system, measure, direct)
@@ -120,7 +126,11 @@ def _leaning_bores(system: Joined) -> set[str]:
 def _moving(system: Joined) -> set[str]:
     """Contributors of the assembly that move bores."""
     slices = component_slices(system.drawn)
-    return {own.name for own in system.drawn.contributors if system.displacing[:, slices[own.name]].any()}
+    return {
+        contributor.name
+        for contributor in system.drawn.contributors
+        if system.displacing[:, slices[contributor.name]].any()
+    }
 
 
 def _linear(system: Joined, measure: GearMeasure, direct: Mapping[str, float]) -> list[Share]:

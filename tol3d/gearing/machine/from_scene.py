@@ -64,11 +64,11 @@ def machine_system(scene: Scene) -> MachineSystem:
     gears = gear_system(place.scene)
     pins = pins_of(scene, gears.model, drawn.assembly)
     model = with_pins(with_bores(place.scene, gears.model, place), pins)
-    read = (*place.shafts.values(), *(shaft for own in pins for shaft in own.shafts))
+    read = (*place.shafts.values(), *(shaft for pin in pins for shaft in pin.shafts))
     bores = bores_of(drawn.assembly, read)
     model = replace(model, contributors=(*model.contributors, *_by_bores(model, bores)))
-    by_name: dict[str, Measure] = {own.name: own for own in gears.measures}
-    by_name |= {own.name: own for system in poses.values() for own in system.measures}
+    by_name: dict[str, Measure] = {measure.name: measure for measure in gears.measures}
+    by_name |= {measure.name: measure for system in poses.values() for measure in system.measures}
     by_name |= {name: _worst(scene, name, spec) for name, spec in scene.of(WorstPositionErrorSpec).items()}
     made = MachineSystem(
         name=scene.scene,
@@ -140,7 +140,7 @@ def _refuse_turned_bores(scene: Scene, system: MachineSystem) -> None:
 
 def _turned_against_hosts(system: MachineSystem, column: int) -> set[str]:
     """Held parts of links whose bores a turn of a joint turns, be it about their own axis, against their hosts."""
-    held = [own for own in system.bores.shafts if own.shaft in {link.held for link in system.gears.model.links}]
+    held = [shaft for shaft in system.bores.shafts if shaft.shaft in {link.held for link in system.gears.model.links}]
     if not held:
         return set()
     rows = np.zeros((2, system.bores.assembly.width))
@@ -231,14 +231,14 @@ def _effect(model: Model, shaft: HousedShaft, k: int, places: Sequence[float]) -
 
 def _in_order(scene: Scene, gears: GearSystem, drawn: AssemblySystem) -> tuple[Any, ...]:
     """All contributors in the scene's order, flanks last; a copy's after its original's; one of both is the gears'."""
-    by_parts = [own for own in drawn.contributors if not is_hidden(own)]
+    by_parts = [contributor for contributor in drawn.contributors if not is_hidden(contributor)]
     every: tuple[Any, ...] = (*by_parts, *gears.contributors)
     by_name = {str(own.name): own for own in every}
     places = {name: place for place, name in enumerate(scene.tolerances)}
-    before: dict[str, int] = {own.name: places[own.name] for own in gears.contributors}
+    before: dict[str, int] = {contributor.name: places[contributor.name] for contributor in gears.contributors}
     last = 0
-    for each in by_parts:
-        last = before[each.name] = len(places) if each.kind == FLANK else places.get(each.name, last)
+    for by_part in by_parts:
+        last = before[by_part.name] = len(places) if by_part.kind == FLANK else places.get(by_part.name, last)
     return tuple(by_name[name] for name in sorted(by_name, key=lambda name: before[name]))
 
 
@@ -280,4 +280,4 @@ def _is_copy(scene: Scene, bore: str, original: str) -> bool:
     """True if a bore belongs to a part identical to the toleranced one."""
     solids, feature = scene.of(SolidSpec), bore.partition(".")[2]
     others = likes(part_of(bore), solids)[1:] if part_of(bore) in solids else ()
-    return any(f"{own}.{feature}" == original for own in others)
+    return any(f"{other}.{feature}" == original for other in others)

@@ -93,7 +93,7 @@ class Joined:
     @cached_property
     def pose_of(self) -> Mapping[str, str]:
         """The pose in which each measure of the assembly is read, by name."""
-        return {own.name: pose for pose, system in self.poses.items() for own in system.measures}
+        return {measure.name: pose for pose, system in self.poses.items() for measure in system.measures}
 
     @cached_property
     def assembly(self) -> AssemblySystem:
@@ -160,14 +160,16 @@ class Joined:
     @cached_property
     def assembly_places(self) -> NDArray[np.intp]:
         """Indices of the columns of the assembly's contributors, of those that are drawn."""
-        return self._places([own for own in self.drawn.contributors if not is_hidden(own)])
+        return self._places([contributor for contributor in self.drawn.contributors if not is_hidden(contributor)])
 
     @cached_property
     def _drawn_columns(self) -> NDArray[np.intp]:
         """Columns of the assembly that are drawn."""
         slices = component_slices(self.drawn)
         ranges = [
-            np.arange(*slices[own.name].indices(1 << 30)) for own in self.drawn.contributors if not is_hidden(own)
+            np.arange(*slices[contributor.name].indices(1 << 30))
+            for contributor in self.drawn.contributors
+            if not is_hidden(contributor)
         ]
         return np.concatenate([*ranges, np.zeros(0)]).astype(np.intp)
 
@@ -182,7 +184,9 @@ class Joined:
 
     def _places(self, contributors: Sequence[Contributor]) -> NDArray[np.intp]:
         slices = component_slices(self)
-        ranges = [np.arange(slices[own.name].start, slices[own.name].stop) for own in contributors]
+        ranges = [
+            np.arange(slices[contributor.name].start, slices[contributor.name].stop) for contributor in contributors
+        ]
         return np.concatenate([*ranges, np.zeros(0)]).astype(np.intp)
 
     def gear_trials(self, trials: Trials, displaced: Array) -> Trials:
@@ -225,7 +229,7 @@ class Joined:
     def reading(self, measure: GearMeasure) -> Bools:
         """True for displacements of the bores that a backlash depends on (shafts * 4,)."""
         own = {each.name for each in self.gears.acting(measure)}
-        return np.array([each.name in own for each in self.displacements for _ in "xy"], dtype=bool)
+        return np.array([displacement.name in own for displacement in self.displacements for _ in "xy"], dtype=bool)
 
     @cached_property
     def link_shafts(self) -> Mapping[str, frozenset[str]]:
@@ -261,15 +265,15 @@ class Joined:
         shifted = low_other + tilt_other * ((place - other) @ z)
         changes = np.vstack([apart @ (shifted - low), tilt_other - tilt])
         slices = component_slices(self.drawn)
-        for each in self.drawn.contributors:
-            place = slices[each.name]
+        for contributor in self.drawn.contributors:
+            place = slices[contributor.name]
             moves = (np.abs(changes[:, place]) > NOTHING).any() or self.bending[:, place].any()
-            if moves and each.kind != "temperature":
-                yield each.name
+            if moves and contributor.kind != "temperature":
+                yield contributor.name
 
     @cached_property
     def _housed(self) -> Mapping[str, Any]:
-        return {own.shaft: own for own in self.bores.shafts}
+        return {shaft.shaft: shaft for shaft in self.bores.shafts}
 
     def _line(self, shaft: str, axis: Array) -> Any:
         """First point of a shaft's line (3,), its displacement, and that per mm along an axis (3, columns)."""

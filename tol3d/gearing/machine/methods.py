@@ -171,9 +171,10 @@ class MachineMethod:
         """Free motion of trains; unknown for one whose axes are misplaced."""
         found = self.turning.turned(seen, readings)
         lost = {
-            own.name: found.failed[own.name] | np.any([failed[shaft] != 0 for shaft in self._shafts(own)], axis=0)
-            for own in readings
-            if self._shafts(own)
+            reading.name: found.failed[reading.name]
+            | np.any([failed[shaft] != 0 for shaft in self._shafts(reading)], axis=0)
+            for reading in readings
+            if self._shafts(reading)
         }
         return replace(found, failed={**found.failed, **lost}) if lost else found
 
@@ -240,7 +241,7 @@ class MachineMethod:
         for pose, name in measure.sizes:
             drives = self.system.joints_of(name)
             for sides in batched(measure.combinations([drive.joint for drive in drives]), at_once):
-                builds = np.concatenate([self._turned(trials, pose, turned, each) for each in sides])
+                builds = np.concatenate([self._turned(trials, pose, turned, side) for side in sides])
                 values, codes, _ = self._placed(builds, [name], pose, kept)
                 shape = len(sides), len(trials)
                 if codes:
@@ -313,7 +314,7 @@ class MachineMethod:
         meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
         shafts = {model.layout.carrying[gear][0] for mesh in meshes for gear in (mesh.driver, mesh.driven)}
         shafts |= {shaft for _, link in measure.kind.links for shaft in self.system.link_shafts[link]}
-        return shafts & {own.shaft for own in self.system.bores.shafts}
+        return shafts & {shaft.shaft for shaft in self.system.bores.shafts}
 
 
 def batched(items: Iterator[Mapping[str, float] | None], size: int) -> Iterator[list[Mapping[str, float] | None]]:

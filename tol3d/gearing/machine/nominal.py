@@ -134,10 +134,10 @@ class _Axes:
 def _axes(gears: Scene, brought: Brought) -> _Axes:
     _, layout = meshes_of_scene(gears, brought)
     others = {
-        part: (own.link.driver, level)
-        for own in brought.links
-        for part, level in own.link.levels.items()
-        if part not in own.ends
+        part: (link.link.driver, level)
+        for link in brought.links
+        for part, level in link.link.levels.items()
+        if part not in link.ends
     }
     return _Axes(layout, others)
 
@@ -187,7 +187,7 @@ def housed(scene: Scene, gears: Scene, assembly: Assembly) -> Housed:
     shafts = {}
     for shaft, (move, bores) in lines.items():
         root = axes.root(shaft)
-        first = min((own for own in lines if axes.root(own) == root), key=axes.order)
+        first = min((line for line in lines if axes.root(line) == root), key=axes.order)
         host = assembly.features[lines[first][1][0].feature].part
         shafts[shaft] = HousedShaft(move, shaft, bores, worlds[root] @ axes.pose(shaft), host)
     for own in shafts.values():
@@ -210,16 +210,16 @@ def _with_distances(gears: Scene, lines: Mapping[str, tuple[str, tuple[Bore, Bor
     """The scene whose meshes have the centre distances of their bores."""
     for name, move in gears.of(GearMeshSpec).items():
         shafts = [_shaft_of(gears, gear) for gear in move.gears]
-        if not any(own in lines for own in shafts):
+        if not any(shaft in lines for shaft in shafts):
             continue
         if not isinstance(move, MeshSpec):
             words = f"expected a mesh of spur gears on a shaft in bores, got {move.words}: the place of a bevel "
             raise gears.refuse(("moves", name), f"{words}gear along its axis is unknown")
-        if outside := [own for own in shafts if own not in lines]:
-            inside = next(own for own in shafts if own in lines)
+        if outside := [shaft for shaft in shafts if shaft not in lines]:
+            inside = next(shaft for shaft in shafts if shaft in lines)
             words = f"expected both shafts in bores, got {outside[0]!r} in none, while {inside!r} lies in bores"
             raise gears.refuse(("moves", name), f"{words}; add a move of kind shaft_in_bores for it")
-        (_, first), (_, second) = (lines[own] for own in shafts)
+        (_, first), (_, second) = (lines[shaft] for shaft in shafts)
         along = _direction(first)
         lean = float(np.linalg.norm(np.cross(along, _direction(second))))
         if lean > SAME_DIRECTION:
@@ -291,16 +291,16 @@ def _with_azimuth(gears: Scene, mesh: Mesh, bores: tuple[Bore, Bore], world: Arr
     return _with_move(gears, mesh.name, move.model_copy(update={"azimuth": azimuth}))
 
 
-def _refuse_misfit(scene: Scene, own: HousedShaft) -> None:
+def _refuse_misfit(scene: Scene, housed_shaft: HousedShaft) -> None:
     """Refuse a shaft that is placed by links other than meshes between housed shafts, or stated elsewhere along z."""
-    for bore in own.bores:
-        x, y, _ = own.frame[:3, :3].T @ (bore.place - own.frame[:3, 3])
+    for bore in housed_shaft.bores:
+        x, y, _ = housed_shaft.frame[:3, :3].T @ (bore.place - housed_shaft.frame[:3, 3])
         if math.hypot(x, y) > SAME_PLACE:
-            words = f"expected bores on the axis on which its train puts {own.shaft!r}, got {bore.feature!r}"
-            raise scene.refuse(("moves", own.move, "in"), f"{words}, {math.hypot(x, y):.4g} mm beside it")
-    spec = scene.of(ShaftInBoresSpec)[own.move]
+            words = f"expected bores on the axis on which its train puts {housed_shaft.shaft!r}, got {bore.feature!r}"
+            raise scene.refuse(("moves", housed_shaft.move, "in"), f"{words}, {math.hypot(x, y):.4g} mm beside it")
+    spec = scene.of(ShaftInBoresSpec)[housed_shaft.move]
     if spec.at is not None:
-        first, last = own.bores
+        first, last = housed_shaft.bores
         middle = first.place if first.end is None else (first.place + last.place) / 2
-        along = float((own.frame[:3, 3] - middle) @ _direction(own.bores))
-        _refuse_other(scene, ("moves", own.move, "at"), spec.at.internal, along, SAME_PLACE, "mm")
+        along = float((housed_shaft.frame[:3, 3] - middle) @ _direction(housed_shaft.bores))
+        _refuse_other(scene, ("moves", housed_shaft.move, "at"), spec.at.internal, along, SAME_PLACE, "mm")

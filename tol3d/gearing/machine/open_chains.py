@@ -1,8 +1,7 @@
-"""Chains of a scene: their joints where parts are placed, and on which side of its play gravity lays each.
+"""Chains of a scene: joints where parts are placed, and the end of its play at which each of them lies, pose by pose.
 
-One of two sides, each as often: the end of its play at which a joint lies that nothing loads.
-
-Joints of parts as trains turn them: which lost motion decides, and which end of it a joint lies at, pose by pose.
+Gravity lays a joint on a side of its play, a train turns it by its lost motion; one that nothing loads lies at either
+end, each as often.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -85,7 +84,7 @@ def chain_of(spec: OpenChainSpec, name: str, setting: Setting) -> Chain:
     _refuse_apart(scene, name, spec, drawing)
     frames = {joint: frame_name(part_of(own.between[1]), own.seat) for joint, own in spec.joints.items() if own.seat}
     columns = {joint: own.start for joint, own in zip(spec.joints, drawn.values(), strict=False)}
-    carried = tuple(part_of(own.between[0]) for own in spec.joints.values())
+    carried = tuple(part_of(joint.between[0]) for joint in spec.joints.values())
     return Chain(name, joints_of(spec, drawing, frames, columns, pose), carried)
 
 
@@ -114,7 +113,9 @@ def loaded_sides(scene: Scene, spec: OpenChainSpec, pose: str) -> Mapping[str, i
     placed = forward(joints, axes, poses_of(scene), {joint.name: joint.angle for joint in joints})
     gravity = np.array(spec.gravity if spec.gravity is not None else (0.0, 0.0, 0.0))
     gravity = gravity / (np.linalg.norm(gravity) or 1.0)
-    masses = [(own.mass.internal, placed[own.of] @ [*(x.internal for x in own.at), 1.0], own.of) for own in spec.masses]
+    masses = [
+        (mass.mass.internal, placed[mass.of] @ [*(x.internal for x in mass.at), 1.0], mass.of) for mass in spec.masses
+    ]
     found = {}
     for joint in joints:
         axis = placed[joint.axis.partition(".")[0]] @ axes[joint.axis]
@@ -139,7 +140,7 @@ def free_joints(scene: Scene, spec: OpenChainSpec) -> tuple[str, ...]:
     """Joints with play that nothing loads in one of the poses."""
     sides = [loaded_sides(scene, spec, pose) for pose in spec.poses]
     trains = (name for name, own in spec.joints.items() if own.train is not None)
-    return tuple(name for name in trains if any(own[name] == 0 for own in sides))
+    return tuple(name for name in trains if any(side[name] == 0 for side in sides))
 
 
 @dataclass(frozen=True)

@@ -79,7 +79,7 @@ def pins_of(scene: Scene, model: Model, assembly: Assembly) -> tuple[Pins, ...]:
 
 def with_pins(model: Model, pins: Sequence[Pins]) -> Model:
     """Gears whose links see where their pins lie."""
-    of = {own.link: tuple(own.moved()) for own in pins}
+    of = {pin.link: tuple(pin.moved()) for pin in pins}
     links = tuple(replace(link, moved=(*link.moved, *of.get(link.name, ()))) for link in model.links)
     return replace(model, links=links)
 
@@ -93,7 +93,7 @@ def _drawn(scene: Scene, name: str, spec: CarrierPinsSpec, link: StatedLink, ass
         if part_of(own) != host:
             words = f"expected a pin of {host!r}, as the axis is, got {own!r}"
             raise scene.refuse(("moves", name, "pins", k), words)
-    (_, centre), places = _pose(assembly, spec.axis), [_pose(assembly, own)[1] for own in spec.pins]
+    (_, centre), places = _pose(assembly, spec.axis), [_pose(assembly, pin)[1] for pin in spec.pins]
     z = centre[:3, 2]
     towards = [pose[:3, 3] - centre[:3, 3] for pose in places]
     flat = [each - z * (each @ z) for each in towards]

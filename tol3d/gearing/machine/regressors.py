@@ -31,14 +31,14 @@ def with_displacements(system: Joined, measure: Measure, columns: Columns) -> Co
     """
     if not any(system.link_shafts[name] for _, name in measure.kind.links):
         return columns
-    own = [each for each in system.drawn.contributors if not is_hidden(each)]
+    own = [contributor for contributor in system.drawn.contributors if not is_hidden(contributor)]
     deviations = np.zeros((len(next(iter(columns.values()))), system.drawn.assembly.width))
     slices = component_slices(system.drawn)
     for each in own:
         deviations[:, slices[each.name]] = _values(each, columns)
     read = torsors.values(system.bores.assembly, deviations, system.bores.lateral_names)
     displaced = system.bores.to_first_order(read)
-    names = [(name, each.per_unit) for each in system.displacements for name in each.columns]
+    names = [(name, displacement.per_unit) for displacement in system.displacements for name in displacement.columns]
     return {**columns, **{name: displaced[:, k] / unit for k, (name, unit) in enumerate(names)}}
 
 
@@ -66,33 +66,38 @@ def parts_by_links(
         return {}
     meshes = measure.per_internal * _without_links(system).bore_slopes(measure)
     slices, found = component_slices(system.drawn), dict[str, Array]()
-    for each in contributors:
-        off = _values(each, columns) - np.array(each.draw.mean(turning=False))
-        displaced = off @ system.displacing[:, slices[each.name]].T
+    for contributor in contributors:
+        off = _values(contributor, columns) - np.array(contributor.draw.mean(turning=False))
+        displaced = off @ system.displacing[:, slices[contributor.name]].T
         if displaced[:, [row + k for row in slopes for k in range(2)]].any():
             through = (np.einsum("ij,ij->i", by, displaced[:, row : row + 2]) for row, by in slopes.items())
-            found[each.name] = np.asarray(sum(through, displaced @ meshes))
+            found[contributor.name] = np.asarray(sum(through, displaced @ meshes))
     return found
 
 
-def _values(own: Contributor, columns: Columns) -> Array:
+def _values(contributor: Contributor, columns: Columns) -> Array:
     """Its components (trials, components) [mm, rad, K]."""
-    return np.stack([np.asarray(columns[name], dtype=np.float64) for name in own.columns], axis=-1) * own.per_unit
+    return (
+        np.stack([np.asarray(columns[name], dtype=np.float64) for name in contributor.columns], axis=-1)
+        * contributor.per_unit
+    )
 
 
 def _without_links(system: Joined) -> Joined:
     """The same, its bores moving nothing of its links."""
-    model, names = system.gears.model, {own.name for own in system.displacements}
+    model, names = system.gears.model, {displacement.name for displacement in system.displacements}
     contributors = (
-        replace(own, effect=together(_of_meshes(own.effect))) if own.name in names else own
-        for own in model.contributors
+        replace(contributor, effect=together(_of_meshes(contributor.effect)))
+        if contributor.name in names
+        else contributor
+        for contributor in model.contributors
     )
     links = tuple(replace(link, moved=()) for link in model.links)
     return replace(system, gears=GearSystem(replace(model, contributors=tuple(contributors), links=links)))
 
 
 def _of_meshes(effect: Effect) -> list[Effect]:
-    return [own for own in effect.singles if not isinstance(own, LinkDeviation)]
+    return [single for single in effect.singles if not isinstance(single, LinkDeviation)]
 
 
 def regress_bores(
@@ -111,17 +116,17 @@ def regress_bores(
         squared: by contributor, which components displace bores to both sides of their mean alike.
         slopes: of the measure by each component of a contributor; asked for groups only.
     """
-    for own in contributors:
-        values = [np.asarray(columns[name], dtype=np.float64) * own.per_unit for name in own.columns]
-        if is_group(own):
-            mine = slopes()[own.name]
+    for contributor in contributors:
+        values = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
+        if is_group(contributor):
+            mine = slopes()[contributor.name]
             term = sum((slope * value for slope, value in zip(mine, values, strict=True)), np.zeros(len(values[0])))
-            regress_term(rows[own.name], term, own.draw.sigma * float(np.sqrt((mine * mine).sum())))
-        elif isinstance(own.draw, ZoneDraw) and len(values) > 1:
-            moments = zip(own.draw.mean_vector, own.draw.sigmas, squared[own.name], strict=True)
-            for row, value, (mean, sigma, bent) in zip(rows[own.name], values, moments, strict=True):
+            regress_term(rows[contributor.name], term, contributor.draw.sigma * float(np.sqrt((mine * mine).sum())))
+        elif isinstance(contributor.draw, ZoneDraw) and len(values) > 1:
+            moments = zip(contributor.draw.mean_vector, contributor.draw.sigmas, squared[contributor.name], strict=True)
+            for row, value, (mean, sigma, bent) in zip(rows[contributor.name], values, moments, strict=True):
                 np.multiply(value - mean if bent else value, 1.0 / (sigma or 1.0), out=row)
                 if bent:
                     np.square(row, out=row)
         else:
-            regress_plainly(rows[own.name], own, values)
+            regress_plainly(rows[contributor.name], contributor, values)

@@ -88,7 +88,9 @@ class MachineSystem(Joined):
         if not isinstance(measure, GearMeasure):
             return {**found, **({"pose": pose} if (pose := self.pose_of[measure.name]) else {})}
         slices = component_slices(self.drawn)
-        moving = (own for own in self.drawn.contributors if self.displacing[:, slices[own.name]].any())
+        moving = (
+            contributor for contributor in self.drawn.contributors if self.displacing[:, slices[contributor.name]].any()
+        )
         return {**found, **laws_told(moving)}
 
     def _owner(self, measure: Measure) -> GearSystem | AssemblySystem:
@@ -120,7 +122,7 @@ class MachineSystem(Joined):
     @cached_property
     def _of_gears(self) -> frozenset[str]:
         """Contributors that act on gears themselves."""
-        return frozenset(own.name for own in self.drawn_by_gears)
+        return frozenset(drawn_by_gear.name for drawn_by_gear in self.drawn_by_gears)
 
     def seen_by_gears(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
         """Trials as the gears see them, on the axes that placed bores give; and their statuses (trials,)."""
@@ -213,8 +215,10 @@ class MachineSystem(Joined):
             rows = self.reading(measure)
             acts = np.asarray(np.concatenate([self.displacing[rows] != 0.0, self.bending[rows]]).any(axis=0))
             slices = component_slices(self.drawn)
-            names = own | {each.name for each in self.drawn.contributors if np.any(acts[slices[each.name]])}
-        return [each for each in self.contributors if each.name in names]
+            names = own | {
+                contributor.name for contributor in self.drawn.contributors if np.any(acts[slices[contributor.name]])
+            }
+        return [contributor for contributor in self.contributors if contributor.name in names]
 
     def _sizes(self, measure: WorstMeasure) -> Sequence[Measure]:
         """The measures of the assembly of which it is the largest."""
@@ -250,7 +254,7 @@ class MachineSystem(Joined):
     ) -> None:
         """See System."""
         if isinstance(measure, WorstMeasure):
-            waiting = {own.name: own for own in contributors}
+            waiting = {contributor.name: contributor for contributor in contributors}
             for size in self._sizes(measure):  # as in the first pose in which they act
                 its = [waiting.pop(own.name) for own in self.acting(size) if own.name in waiting]
                 self._regress_part(size, its, columns, rows)
@@ -259,10 +263,12 @@ class MachineSystem(Joined):
             self._regress_part(measure, contributors, columns, rows)
             return
         seen = with_displacements(self, measure, columns)
-        self.gears.regress(measure, [own for own in contributors if own.name in self._of_gears], seen, rows)
-        others = [own for own in contributors if own.name not in self._of_gears]
+        self.gears.regress(
+            measure, [contributor for contributor in contributors if contributor.name in self._of_gears], seen, rows
+        )
+        others = [contributor for contributor in contributors if contributor.name not in self._of_gears]
         slices = component_slices(self.drawn)
-        squared = {own.name: self.squared[slices[own.name]] for own in others}
+        squared = {other.name: self.squared[slices[other.name]] for other in others}
         regress_bores(others, columns, rows, squared, lambda: self._bore_slopes(measure, others))
         for name, part in parts_by_links(self, measure, others, seen).items():
             rows[name][...] = 0.0
@@ -272,19 +278,27 @@ class MachineSystem(Joined):
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
         """Regress the effect of trains on a part as is done for the lost motion that causes it."""
-        known = {own.name: own for own in self.drawn.contributors if not is_hidden(own)}
+        known = {contributor.name: contributor for contributor in self.drawn.contributors if not is_hidden(contributor)}
         behind = {name: by for name, by in self._behind_joints(measure).items() if by is not None}
-        its = [known[own.name] for own in contributors if own.name in known and own.name not in behind]
+        its = [
+            known[contributor.name]
+            for contributor in contributors
+            if contributor.name in known and contributor.name not in behind
+        ]
         self._owner_of_part(measure).regress(measure, its, columns, rows)
         for reading in {by.name: by for by in behind.values()}.values():
-            own = [each for each in contributors if (by := behind.get(each.name)) and by.name == reading.name]
+            own = [
+                contributor
+                for contributor in contributors
+                if (by := behind.get(contributor.name)) and by.name == reading.name
+            ]
             self.regress(reading, own, columns, rows)
 
     def _bore_slopes(self, measure: GearMeasure, contributors: Sequence[Contributor]) -> Mapping[str, Array]:
         """Change of a backlash by each component of contributors that move bores."""
         per_column = self.bore_slopes(measure) @ self.displacing
         slices = component_slices(self.drawn)
-        return {own.name: per_column[slices[own.name]] for own in contributors}
+        return {contributor.name: per_column[slices[contributor.name]] for contributor in contributors}
 
     def closed_form(self, measure: Measure) -> ClosedForm | None:
         """See System."""
@@ -312,7 +326,7 @@ class MachineSystem(Joined):
                 return None
             factor = HALF * drive.sides[pose] * slope
             forms.append((factor, its))
-        return with_joints(form, forms, [each.name for each in self.contributors])
+        return with_joints(form, forms, [contributor.name for contributor in self.contributors])
 
     @kept
     def _form(self, measure: GearMeasure, *, at_one_position: bool) -> ClosedForm | None:

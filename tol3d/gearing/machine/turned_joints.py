@@ -51,11 +51,11 @@ class Turning:
             trials: as the gears see them.
             readings: each at one position that all trials share.
         """
-        plays = {own.name: self._play(trials, own) for own in readings if self._is_dear(own)}
-        others = [own for own in readings if own.name not in plays]
+        plays = {reading.name: self._play(trials, reading) for reading in readings if self._is_dear(reading)}
+        others = [reading for reading in readings if reading.name not in plays]
         if others:
             plays |= self._solved(trials, others)
-        ordered = {own.name: plays[own.name] for own in readings}
+        ordered = {reading.name: plays[reading.name] for reading in readings}
         return Turned(ordered, {name: ~np.isfinite(own) for name, own in ordered.items()})
 
     def _is_dear(self, reading: Measure) -> bool:
@@ -65,9 +65,9 @@ class Turning:
         """Lost motions (trials,) by reading, not a number where a train has none."""
         answers = self.method.answers(trials, list(readings))
         found = {}
-        for own in readings:
-            codes = answers.status.get(own.name, np.zeros(len(trials), dtype=np.int8))
-            found[own.name] = np.where(codes != 0, np.nan, answers.values[own.name][:, 0])
+        for reading in readings:
+            codes = answers.status.get(reading.name, np.zeros(len(trials), dtype=np.int8))
+            found[reading.name] = np.where(codes != 0, np.nan, answers.values[reading.name][:, 0])
         return found
 
     def _play(self, trials: Trials, reading: Measure) -> Array:

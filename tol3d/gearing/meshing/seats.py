@@ -1,6 +1,6 @@
-"""Backlash of a seated mesh: normal, circumferential, angular; below 0 where the teeth interfere.
+"""Meshes of some trials seated at the positions that measures read, and their backlashes: normal, at a circle, angular.
 
-Meshes of some trials brought to contact, at every set of positions at which measures read them.
+A backlash is below 0 where the teeth interfere.
 """
 
 from collections.abc import Mapping, Sequence

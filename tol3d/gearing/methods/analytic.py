@@ -94,8 +94,8 @@ class _Stacks:
         if (backlash, key) not in self._of_flanks:
             count, positions = angles.shape
             found = np.empty(angles.shape)
-            for own in pieces(count, positions, self._trials.deviations.shape[1]):
-                found[own] = self._asked(backlash, angles[own], own)
+            for piece in pieces(count, positions, self._trials.deviations.shape[1]):
+                found[piece] = self._asked(backlash, angles[piece], piece)
             if backlash.quantity == "rest_angle":
                 mesh = self._model.mesh(backlash.mesh)
                 play = self._by_flanks(replace(backlash, quantity="angular_backlash", gear=mesh.driven), key, angles)

@@ -76,8 +76,10 @@ def _parts_in_links(model: Model, measure: Measure, columns: Columns) -> Mapping
         if not link.compares:
             continue
         means = {
-            each.name: np.array(each.draw.mean(turning=model.turns_at_random(each, measure.positions)))
-            for each in seen.contributors
+            contributor.name: np.array(
+                contributor.draw.mean(turning=model.turns_at_random(contributor, measure.positions))
+            )
+            for contributor in seen.contributors
         }
         parts = _parts(link, seen, means)
         found |= {name: factor * measure.per_internal * part for name, part in parts.items()}

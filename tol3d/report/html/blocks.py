@@ -104,7 +104,7 @@ def page_html(page: Page) -> str:
 
 def page_blocks(blocks: Iterable[PageItem], level: int = 3, narrow: str = SCROLLS) -> Markup:
     """Blocks below each other; titles are headings of a level, tables SCROLLS or CARDS on narrow pages."""
-    return together(*(_block(own, level, narrow) for own in blocks if not _is_blank(own)))
+    return together(*(_block(block, level, narrow) for block in blocks if not _is_blank(block)))
 
 
 def _is_blank(block: PageItem) -> bool:

@@ -175,7 +175,7 @@ def _presenter(run: RunSummary) -> Presenter:
 
 
 def _badge(run: RunSummary, accepted: Accepted) -> Markup:
-    verdicts = {JudgedMeasure.of(own, accepted).verdict for own in run.measures.values()}
+    verdicts = {JudgedMeasure.of(measure, accepted).verdict for measure in run.measures.values()}
     kind = "not-ok" if "NOT OK" in verdicts else "open" if "too few trials" in verdicts else "ok"
     kind = "none" if verdicts == {"no limits"} else kind
     return tag("p", VERDICTS[kind], class_=f"verdict {kind}")
@@ -292,7 +292,7 @@ def _document(name: str, body: Sequence[Inside]) -> str:
     style, scripts = _resource("style.css"), [_resource("script.js")]
     if any('class="view"' in own for own in body if isinstance(own, Markup)):
         scripts.append(_resource("viewer.js"))
-    allowed = " ".join(f"'sha256-{_hash_of(own)}'" for own in scripts)
+    allowed = " ".join(f"'sha256-{_hash_of(script)}'" for script in scripts)
     policy = POLICY.format(scripts=allowed, style=_hash_of(style))
     head = tag(
         "head",
@@ -303,7 +303,7 @@ def _document(name: str, body: Sequence[Inside]) -> str:
         tag("title", f"{name} · tol3d"),
         tag("style", Markup(style)),
     )
-    inside = tag("body", tag("main", *body), *(tag("script", Markup(own)) for own in scripts))
+    inside = tag("body", tag("main", *body), *(tag("script", Markup(script)) for script in scripts))
     return f"<!doctype html>\n{tag('html', head, inside, lang='en')}\n"
 
 

@@ -145,49 +145,49 @@ def _row_height(panel: Panel) -> float:
     return bars * BAR + BETWEEN if bars else RANGE
 
 
-def _drawn(own: Series, x: Scale, y: Scale) -> Iterator[Markup]:
+def _drawn(series: Series, x: Scale, y: Scale) -> Iterator[Markup]:
     """A series over numbers."""
-    match own:
+    match series:
         case Filled():
-            yield from _bars(own, x, y)
+            yield from _bars(series, x, y)
         case Outline():
-            path = f"M{x(float(own.edges[0])):.1f} {y(0.0):.1f}"
-            places = zip(own.heights, own.edges[1:], strict=True)
+            path = f"M{x(float(series.edges[0])):.1f} {y(0.0):.1f}"
+            places = zip(series.heights, series.edges[1:], strict=True)
             path += "".join(f"V{y(float(height)):.1f}H{x(float(edge)):.1f}" for height, edge in places)
-            yield _path(f"{path}V{y(0.0):.1f}", f"line {_stroke(own)}{own.role}", own.label)
+            yield _path(f"{path}V{y(0.0):.1f}", f"line {_stroke(series)}{series.role}", series.label)
         case Line():
-            if points := _broken(own.x, own.y, x, y):
-                yield _path(points, f"line {_stroke(own)}{own.role}", own.label)
-            if own.dots:
-                yield from (_dot(a, b, own.role, own.label, 2.5) for a, b in _known(own.x, own.y, x, y))
+            if points := _broken(series.x, series.y, x, y):
+                yield _path(points, f"line {_stroke(series)}{series.role}", series.label)
+            if series.dots:
+                yield from (_dot(a, b, series.role, series.label, 2.5) for a, b in _known(series.x, series.y, x, y))
         case Band():
-            there, back = _points(own.x, own.low, x, y), _points(own.x[::-1], own.high[::-1], x, y)
+            there, back = _points(series.x, series.low, x, y), _points(series.x[::-1], series.high[::-1], x, y)
             if there:
-                yield _path(f"M{there}L{back}Z", f"band {own.role}", own.label)
+                yield _path(f"M{there}L{back}Z", f"band {series.role}", series.label)
         case Points():
-            size = 1.5 if own.sign == "speck" else 4.0
-            yield from (_dot(a, b, own.role, own.label, size) for a, b in _known(own.x, own.y, x, y))
+            size = 1.5 if series.sign == "speck" else 4.0
+            yield from (_dot(a, b, series.role, series.label, size) for a, b in _known(series.x, series.y, x, y))
         case Field():
-            yield from _field(own, x, y)
+            yield from _field(series, x, y)
         case Range() | Lengths() | Cells():
-            raise TypeError(f"{type(own).__name__} stands in rows")
+            raise TypeError(f"{type(series).__name__} stands in rows")
         case _:
-            assert_never(own)
+            assert_never(series)
 
 
-def _field(own: Field, x: Scale, y: Scale) -> Iterator[Markup]:
+def _field(field: Field, x: Scale, y: Scale) -> Iterator[Markup]:
     """Cells with their values in tooltips, and as numbers where they are few."""
-    lefts, lows = [x.within(a) for a in own.edges(upright=False)], [y.within(a) for a in own.edges(upright=True)]
-    for (row, column), value in np.ndenumerate(own.values):
+    lefts, lows = [x.within(a) for a in field.edges(upright=False)], [y.within(a) for a in field.edges(upright=True)]
+    for (row, column), value in np.ndenumerate(field.values):
         if np.isnan(value):
             continue
         place = {"x": lefts[column], "y": lows[row + 1]}
         size = {"width": lefts[column + 1] - lefts[column], "height": lows[row] - lows[row + 1]}
-        across, up = f"{x.axis.label} {own.x[column]:g}", f"{y.axis.label} {own.y[row]:g}"
-        strength = float(own.strength[row, column])
-        words = tag("title", f"{across}, {up}: {own.words} {value:.4g}")
+        across, up = f"{x.axis.label} {field.x[column]:g}", f"{y.axis.label} {field.y[row]:g}"
+        strength = float(field.strength[row, column])
+        words = tag("title", f"{across}, {up}: {field.words} {value:.4g}")
         yield tag("rect", words, **place, **size, class_="cell", fill_opacity=0.06 + 0.94 * strength)
-        if own.written:
+        if field.written:
             kind = "tick strong" if strength > DARK else "tick"
             middle = {"x": place["x"] + size["width"] / 2, "y": place["y"] + size["height"] / 2 + 4}
             yield tag("text", f"{value:.3g}", **middle, text_anchor="middle", class_=kind)

@@ -142,7 +142,7 @@ def _states(
         display = presenter.display(run, which, magnify=factor)
         world = _world_of(display, shown)
         if world is not None:
-            world = replace(world, bodies=tuple(piece for own in world.bodies for piece in own.pieces))
+            world = replace(world, bodies=tuple(piece for body in world.bodies for piece in body.pieces))
         shown = shown or world
         if shown is None or world is None:
             continue
@@ -180,7 +180,7 @@ def _measured(run: Run, which: Which, label: str) -> str:
 
 def _world_of(display: Display, shown: World | None) -> World | None:
     """The world with the most bodies, or the one of that name."""
-    worlds = [own for own in display.worlds if own.bodies and (shown is None or own.name == shown.name)]
+    worlds = [world for world in display.worlds if world.bodies and (shown is None or world.name == shown.name)]
     return max(worlds, key=lambda own: len(own.bodies), default=None)
 
 
@@ -209,10 +209,12 @@ def _undeviated(
 ) -> tuple[list[tuple[str, list[_State]]], _Model, tuple[str, ...]]:
     """The same with every part nominal, and the parts that differ from their build."""
     nominal = builds[0][1][0].meshes
-    deviate = {k for _, states in builds for own in states for k, mesh in enumerate(own.meshes) if mesh != nominal[k]}
+    deviate = {
+        k for _, states in builds for state in states for k, mesh in enumerate(state.meshes) if mesh != nominal[k]
+    }
     fewer = _Model([model.surfaces[mesh] for mesh in nominal])
     places = tuple(range(len(nominal)))
-    kept = [(name, [replace(own, meshes=places) for own in states]) for name, states in builds]
+    kept = [(name, [replace(state, meshes=places) for state in states]) for name, states in builds]
     return kept, fewer, tuple(world.bodies[k].name for k in sorted(deviate))
 
 
@@ -242,7 +244,7 @@ def _notes(
     builds: Sequence[tuple[str, list[_State]]], world: World, nominal: Sequence[str], coarser: Set[int]
 ) -> list[str]:
     """Notes on differences between the picture and the build."""
-    rough = {k for _, states in builds for own in states for k, mesh in enumerate(own.meshes) if mesh in coarser}
+    rough = {k for _, states in builds for state in states for k, mesh in enumerate(state.meshes) if mesh in coarser}
     named = ", ".join(world.bodies[k].name for k in sorted(rough))
     notes = [f"shown nominal: {', '.join(nominal)}"] if nominal else []
     return [*notes, *([f"coarser facets, for the size of this page: {named}"] if named else [])]
@@ -273,8 +275,8 @@ def _figure(
 ) -> Markup:
     told: dict[str, Any] = {
         "up": list(world.up),
-        "parts": [{"colour": own.colour, "opacity": own.opacity} for own in world.bodies],
-        "builds": [{"states": [asdict(own) for own in states]} for _, states in builds],
+        "parts": [{"colour": body.colour, "opacity": body.opacity} for body in world.bodies],
+        "builds": [{"states": [asdict(state) for state in states]} for _, states in builds],
     }
     data = json.dumps(told, sort_keys=True, separators=(",", ":")).replace("<", "\\u003c")
     picture = tag("img", src=f"data:image/jpeg;base64,{still}", alt="the parts, as tol3d view shows them")
@@ -283,7 +285,7 @@ def _figure(
         tag("div", tag("canvas"), picture if still else None, class_="stage"),
         *_controls(world, builds),
         tag("p", class_="state note"),
-        *(tag("p", own, class_="note") for own in notes),
+        *(tag("p", note, class_="note") for note in notes),
         tag("script", Markup(data), type="application/json", id="view-data"),
         tag("script", Markup(base64.b64encode(packed).decode()), type="text/plain", id="view-model"),
         class_="view",

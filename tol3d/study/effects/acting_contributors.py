@@ -59,7 +59,7 @@ def acting(simulation: Simulation, measure: Measure) -> Sequence[Contributor]:
     if not seen:
         return by_theory
     names = seen | {own.name for own in by_theory}
-    return [own for own in simulation.system.contributors if own.name in names]
+    return [contributor for contributor in simulation.system.contributors if contributor.name in names]
 
 
 def looked_at(simulation: Simulation, measure: Measure) -> Seen:
@@ -80,12 +80,15 @@ def nothing_acts(simulation: Simulation, measure: Measure) -> str:
 
 def _look(simulation: Simulation) -> Mapping[str, Seen]:
     system, engine = simulation.system, simulation.study.engine
-    without = {own.name: names for own in system.measures if (names := _without_slope(system, own))}
+    without = {measure.name: names for measure in system.measures if (names := _without_slope(system, measure))}
     if not without:
         return {}
     method = system.method(engine, system.materials(engine)) if simulation.has_geometry else None
-    evaluation, measures = Evaluation(system, method), [own for own in system.measures if own.name in without]
-    prices = {own.name: price(system, (own,)) for own in measures}
+    evaluation, measures = (
+        Evaluation(system, method),
+        [measure for measure in system.measures if measure.name in without],
+    )
+    prices = {measure.name: price(system, (measure,)) for measure in measures}
     budget = max(SHARE * simulation.study.trials, AT_LEAST) * price(system, system.measures)
     count = int(np.clip(budget / (max(prices.values()) + sum(prices.values())), FEWEST, BUILDS))
     found = {}
@@ -101,8 +104,8 @@ def _look(simulation: Simulation) -> Mapping[str, Seen]:
 def _without_slope(system: System, measure: Measure) -> tuple[str, ...]:
     """Names of contributors that vary and do not act by theory."""
     names = {own.name for own in system.acting(measure)}
-    others = (own for own in system.contributors if own.name not in names)
-    return tuple(own.name for own in others if any(sigma > 0.0 for sigma in component_sigmas(own.draw)))
+    others = (contributor for contributor in system.contributors if contributor.name not in names)
+    return tuple(other.name for other in others if any(sigma > 0.0 for sigma in component_sigmas(other.draw)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,8 +129,8 @@ class _Builds:
     def of(cls, simulation: Simulation, turning: Mapping[str, bool], count: int) -> "_Builds":
         """So many builds."""
         slices = component_slices(simulation.system)
-        drawings = [Drawing(own.name, own.draw, slices[own.name], turning[own.name])
-                    for own in simulation.system.contributors]  # fmt: skip
+        drawings = [Drawing(contributor.name, contributor.draw, slices[contributor.name], turning[contributor.name])
+                    for contributor in simulation.system.contributors]  # fmt: skip
         space, every = Space(drawings), 2 * count + POOL
         plain = replace(simulation, study=Study(trials=every, engine=simulation.study.engine))
         trials, ends = drawn(plain, 0, every), _mixed_ends(space, every)

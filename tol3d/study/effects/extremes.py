@@ -58,8 +58,11 @@ def ends_together(
         slopes: of the measure (components,), by contributor.
         turning: which contributors turn through all angles from trial to trial.
     """
-    found = {own.name: ends_alone(own, slopes[own.name], turning=turning[own.name]) for own in contributors}
-    read = {name for own in contributors for name in reads_of(own)}
+    found = {
+        contributor.name: ends_alone(contributor, slopes[contributor.name], turning=turning[contributor.name])
+        for contributor in contributors
+    }
+    read = {name for contributor in contributors for name in reads_of(contributor)}
     if not read:
         return found
     group = [own for own in in_draw_order(contributors) if own.name in read or reads_of(own)]

@@ -72,7 +72,7 @@ class FirstOrder:
     @property
     def sigma(self) -> float:
         """Standard deviation by the root sum of squares (RSS)."""
-        return math.sqrt(sum(own.variance for own in self.effects))
+        return math.sqrt(sum(effect.variance for effect in self.effects))
 
     def variance_percent(self, effect: FirstOrderEffect) -> float:
         """Share of the variance [%]; 0 if nothing varies."""
@@ -99,7 +99,9 @@ def first_orders(
         for shown, own in evaluations(system, method).items()
         if measures
     }
-    return {own.name: {shown: by_measure[own.name] for shown, by_measure in found.items()} for own in measures}
+    return {
+        measure.name: {shown: by_measure[measure.name] for shown, by_measure in found.items()} for measure in measures
+    }
 
 
 def first_order(simulation: Simulation, measures: Sequence[Measure], values: Values) -> dict[str, FirstOrder]:
@@ -117,15 +119,16 @@ def first_order(simulation: Simulation, measures: Sequence[Measure], values: Val
 
 def _correlated(found: FirstOrder, system: System, copula: Copula) -> FirstOrder:
     """First order with the variance that correlations make of the sum."""
-    draws = {own.name: own.draw for own in system.contributors}
+    draws = {contributor.name: contributor.draw for contributor in system.contributors}
     effects = {
-        own.name: math.copysign(math.sqrt(own.variance), own.slope)
-        for own in found.effects
-        if own.name in copula.names and not math.isnan(own.slope)
+        effect.name: math.copysign(math.sqrt(effect.variance), effect.slope)
+        for effect in found.effects
+        if effect.name in copula.names and not math.isnan(effect.slope)
     }
     parts = divided_variances(effects, copula, draws)
     return replace(
-        found, effects=tuple(replace(own, variance=parts.get(own.name, own.variance)) for own in found.effects)
+        found,
+        effects=tuple(replace(effect, variance=parts.get(effect.name, effect.variance)) for effect in found.effects),
     )
 
 
@@ -173,11 +176,15 @@ def _slopes(
     """Change of measures per mm, rad or K of each contributor's components (components,); 0 if it does not act."""
     names = {measure: {own.name for own in those} for measure, those in acting.items()}
     slopes = {
-        measure.name: {own.name: np.zeros(len(own.draw.components)) for own in system.contributors}
+        measure.name: {
+            contributor.name: np.zeros(len(contributor.draw.components)) for contributor in system.contributors
+        }
         for measure in measures
     }
     slices = component_slices(system)
-    asked = [own for own in system.contributors if any(own.name in those for those in names.values())]
+    asked = [
+        contributor for contributor in system.contributors if any(contributor.name in those for those in names.values())
+    ]
     for batch in batches(asked, [2 * len(own.draw.components) for own in asked], mean.shape[1]):
         ends = np.cumsum([2 * len(own.draw.components) for own in batch]).tolist()
         places = [slice(end - 2 * len(own.draw.components), end) for own, end in zip(batch, ends, strict=True)]
@@ -203,11 +210,11 @@ def _step(contributor: Contributor) -> float:
 
 def _concerned(system: Described, acting: Sequence[Contributor]) -> list[Contributor]:
     """Contributors that act on a measure and those that they read, directly or not, in the system's order."""
-    known = {own.name: own for own in system.contributors}
+    known = {contributor.name: contributor for contributor in system.contributors}
     names = {own.name for own in acting}
     while added := {name for own in names for name in reads_of(known[own])} - names:
         names |= added
-    return [own for own in system.contributors if own.name in names]
+    return [contributor for contributor in system.contributors if contributor.name in names]
 
 
 def _effect(contributor: Contributor, slopes: Array, ends: Array, *, turning: bool) -> FirstOrderEffect:

@@ -69,7 +69,7 @@ def high_low_mean_ranges(
 def high_low_mean_percents(ranges: Ranges) -> Percents:
     """Shares [%] of contributors: the square of each one's range in their sum; 0 where nothing moves the measure."""
     squares = {name: None if own is None else own**2 for name, own in ranges.items()}
-    total = sum(own for own in squares.values() if own is not None)
+    total = sum(square for square in squares.values() if square is not None)
     return {name: None if own is None else 100 * own / total if total > 0.0 else 0.0 for name, own in squares.items()}
 
 
@@ -104,7 +104,7 @@ def _apportioned(
     groups, part = measures_alike(system, measures), math.inf
     wanted = [math.inf] * len(groups)
     if math.isfinite(contacts):
-        wanted = [own.contacts for own in extents(system, measures)]
+        wanted = [extent.contacts for extent in extents(system, measures)]
         part = (1.0 + ROUNDING) * contacts / max(sum(wanted), 1.0)
     for (turning, alike), own in zip(groups, wanted, strict=True):
         yield turning, alike, own * part
@@ -126,7 +126,10 @@ def _extent(alone: Sequence["_Alone"], measures: Sequence[Measure], cost: Cost, 
 
 def _alone(system: System, turning: Mapping[str, bool], mean: Array) -> list["_Alone"]:
     slices = component_slices(system)
-    return [_Alone(own, slices[own.name], turning[own.name], mean) for own in system.contributors]
+    return [
+        _Alone(contributor, slices[contributor.name], turning[contributor.name], mean)
+        for contributor in system.contributors
+    ]
 
 
 def _named_ranges(
@@ -138,10 +141,10 @@ def _named_ranges(
     names = [contributor.name for contributor in system.contributors]
     unknown: Ranges = dict.fromkeys(names)  # where a build beside the mean cannot be assembled
     return {
-        own.name: dict(zip(names, its.tolist(), strict=True))
-        if (its := found.get(own.name)) is not None and not np.isnan(its).any()
+        measure.name: dict(zip(names, its.tolist(), strict=True))
+        if (its := found.get(measure.name)) is not None and not np.isnan(its).any()
         else unknown
-        for own in measures
+        for measure in measures
     }
 
 
@@ -166,7 +169,7 @@ def ranges(
     Returns:
         By measure (contributors,) in its unit, nan where a build fails; no entry where the mean build fails.
     """
-    alone = [_Alone(own, slices[own.name], turning=False, mean=mean) for own in contributors]
+    alone = [_Alone(contributor, slices[contributor.name], turning=False, mean=mean) for contributor in contributors]
     return _ranges_of(alone, mean, measures, values, cost)
 
 
@@ -192,7 +195,7 @@ def _ranges_of(
     rows = [2 * (len(own.contributor.draw.components) + len(seated) * all_exact) for own in asking]
     by_name = {own.contributor.name: own for own in asking}
     for contributors in batches([own.contributor for own in asking], rows, mean.shape[1]):
-        found.ask([by_name[own.name] for own in contributors], all_exact=all_exact)
+        found.ask([by_name[contributor.name] for contributor in contributors], all_exact=all_exact)
     if not all_exact:
         found.build_the_largest(asking, exact)
     return found.by_measure
@@ -382,7 +385,7 @@ class _Alone:
         if len(places) < len(rows):
             self._want(rows, name)
             raise _NotKnownError
-        if all(own[0] is places[0][0] for own in places):
+        if all(place[0] is places[0][0] for place in places):
             together.append((places[0][0], [k for _, k in places]))
         return np.array([found[name][k] for found, k in places], dtype=np.float64)
 
@@ -424,9 +427,9 @@ def _answer(asked: Sequence[_Alone], measures: Sequence[Measure], values: Values
     every = [each for wanted in groups.values() for each in wanted]
     if len(groups) > len(measures):  # ends lie elsewhere for each measure
         groups = {
-            (own.name,): wanted
-            for own in measures
-            if (wanted := [each for names, its in groups.items() if own.name in names for each in its])
+            (measure.name,): wanted
+            for measure in measures
+            if (wanted := [each for names, its in groups.items() if measure.name in names for each in its])
         }
     if len(groups) > 1 and len(every) <= TOGETHER:
         apart = sum(CALL + len(wanted) * cost([known[name] for name in names]) for names, wanted in groups.items())

@@ -70,9 +70,9 @@ class Space:
     def free(self) -> Sequence[tuple[Drawing, Region]]:
         """Contributors that act and read no others, with their regions."""
         return [
-            (own, region_of(own.draw, turning=own.turning))
-            for own in self.drawings
-            if own.acts and not isinstance(own.draw, Dependent)
+            (drawing, region_of(drawing.draw, turning=drawing.turning))
+            for drawing in self.drawings
+            if drawing.acts and not isinstance(drawing.draw, Dependent)
         ]
 
     @cached_property
@@ -88,20 +88,20 @@ class Space:
     @cached_property
     def mean(self) -> Array:
         """All at their means (components,)."""
-        means = [np.array(own.draw.mean(turning=own.turning), dtype=float) for own in self.drawings]
+        means = [np.array(drawing.draw.mean(turning=drawing.turning), dtype=float) for drawing in self.drawings]
         return np.concatenate([np.zeros(0), *means])
 
     @cached_property
     def sigmas(self) -> Array:
         """Sigma of each component."""
-        each = [np.array(component_sigmas(own.draw), dtype=float) for own in self.drawings]
+        each = [np.array(component_sigmas(drawing.draw), dtype=float) for drawing in self.drawings]
         found = np.concatenate([np.zeros(0), *each])
         return np.where(found > 0.0, found, 0.0)
 
     @cached_property
     def acting(self) -> NDArray[np.int64]:
         """Columns that are moved: those of contributors that act and vary."""
-        own = [np.arange(each.columns.start, each.columns.stop) for each in self.drawings if each.acts]
+        own = [np.arange(drawing.columns.start, drawing.columns.stop) for drawing in self.drawings if drawing.acts]
         columns = np.concatenate(own) if own else np.zeros(0, dtype=np.int64)
         return np.asarray(columns[self.sigmas[columns] > 0.0])
 
@@ -154,13 +154,13 @@ def space_of(system: System, measure: Measure, draws: Mapping[str, Draw], acting
     return Space(
         [
             Drawing(
-                own.name,
-                draws[own.name],
-                slices[own.name],
-                system.turns_at_random(own, measure.positions),
-                own.name in names,
+                contributor.name,
+                draws[contributor.name],
+                slices[contributor.name],
+                system.turns_at_random(contributor, measure.positions),
+                contributor.name in names,
             )
-            for own in system.contributors
+            for contributor in system.contributors
         ]
     )
 
@@ -263,7 +263,7 @@ class Remaining:
 
 
 def _columns(space: Space, name: str) -> slice:
-    return next(own.columns for own in space.drawings if own.name == name)
+    return next(drawing.columns for drawing in space.drawings if drawing.name == name)
 
 
 def furthest(space: Space, deviations: Array, slopes: Array) -> Rows:

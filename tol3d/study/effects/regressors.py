@@ -103,9 +103,9 @@ class RegressorSet:
         views = {own.name: rows[slice(*at)] for own, at in zip(self.contributors, pairwise(ends), strict=True)}
         sloping = [own for own in self.contributors if own.name not in self.seen]
         system.regress(self.measures[0], sloping, columns, views)
-        for own in self.contributors:
-            if own.name in self.seen:
-                regress_squares(views[own.name], own, columns)
+        for contributor in self.contributors:
+            if contributor.name in self.seen:
+                regress_squares(views[contributor.name], contributor, columns)
         return rows
 
 
@@ -170,19 +170,19 @@ def _set(
     simulation: Simulation, measures: Sequence[Measure], acting: Mapping[str, tuple[str, ...]], *, apart: bool
 ) -> RegressorSet:
     system = simulation.system
-    names = {name for own in measures for name in acting[own.name]}
-    contributors = tuple(own for own in system.contributors if own.name in names)
+    names = {name for measure in measures for name in acting[measure.name]}
+    contributors = tuple(contributor for contributor in system.contributors if contributor.name in names)
     groups = _dependent(system.contributors, simulation.copula)
     clusters = Clusters(
-        np.array([regressor_count(own) for own in contributors], dtype=np.intp),
-        np.array([groups[own.name] for own in contributors], dtype=np.intp),
+        np.array([regressor_count(contributor) for contributor in contributors], dtype=np.intp),
+        np.array([groups[contributor.name] for contributor in contributors], dtype=np.intp),
     )
     return RegressorSet(
         tuple(measures),
         contributors,
         clusters,
         apart,
-        {own.name: acting[own.name] for own in measures},
+        {measure.name: acting[measure.name] for measure in measures},
         looked_at(simulation, measures[0]).names,
     )
 
@@ -193,7 +193,9 @@ def _dependent(contributors: Sequence[Contributor], copula: Copula) -> Mapping[s
     Or they are correlated.
     """
     groups = {own.name: place for place, own in enumerate(contributors)}
-    links = [(own.name, *reads_of(own)) for own in contributors] + [own.names for own in copula.blocks]
+    links = [(contributor.name, *reads_of(contributor)) for contributor in contributors] + [
+        block.names for block in copula.blocks
+    ]
     for names in links:
         joined = {groups[name] for name in names}
         if len(joined) > 1:

@@ -142,7 +142,7 @@ def first_starts(space: Space, built: Built, at_rest: Standing, random: int) -> 
 
 def _stated_ends(space: Space, mean: Array, slopes: Array) -> Rows:
     """The ends by slopes as first order states them (2, components): also of contributors that have no slope."""
-    acting = [own for own in space.drawings if own.acts]
+    acting = [drawing for drawing in space.drawings if drawing.acts]
     ends = ends_together(
         acting, {own.name: slopes[own.columns] for own in acting}, {own.name: own.turning for own in acting}
     )
@@ -155,8 +155,8 @@ def _stated_ends(space: Space, mean: Array, slopes: Array) -> Rows:
 def joined(several: Sequence[Starts]) -> Starts:
     """Starts below each other."""
     first, *others = several
-    for own in others:
-        first = first.and_(own)
+    for other in others:
+        first = first.and_(other)
     return first
 
 

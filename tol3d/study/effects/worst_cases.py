@@ -46,12 +46,12 @@ def worst_cases(
     every, left = evaluations(simulation.system, method), float(CONTACTS)
     words = {shown: ANALYTIC_METHOD if shown == ANALYTIC else simulation.study.engine for shown in every}
     found: dict[str, dict[str, WorstCase | None]] = {own.name: {} for own in measures}
-    for own in measures:
+    for measure in measures:
         for shown, evaluation in every.items():
-            one = price(simulation, words[shown], own)
-            worst = _worst_case(simulation, evaluation, own, left / one)
+            one = price(simulation, words[shown], measure)
+            worst = _worst_case(simulation, evaluation, measure, left / one)
             left -= one * (worst.evaluations if worst else 0)
-            found[own.name][shown] = worst
+            found[measure.name][shown] = worst
     return found
 
 
@@ -82,7 +82,12 @@ def built_by(evaluation: Evaluation, measure: Measure, counted: Callable[[int], 
 
 def _worst_case(simulation: Simulation, evaluation: Evaluation, measure: Measure, builds: float) -> WorstCase | None:
     system = simulation.system
-    space = space_of(system, measure, {own.name: own.draw for own in system.contributors}, acting(simulation, measure))
+    space = space_of(
+        system,
+        measure,
+        {contributor.name: contributor.draw for contributor in system.contributors},
+        acting(simulation, measure),
+    )
     if not len(space.acting) or ROWS * builds_a_row(space) > builds:
         return None
     built = built_by(evaluation, measure)

@@ -1,6 +1,7 @@
 """Task of the workers: blocks of a study's trials, from their numbers to columns and statistics.
 
-Blocks of a study's trials, whose statistics are folded together and that are written as one file each.
+Trials of a block are folded together and written as one file. `workers_for` says how many workers a run of the command
+line has unless it states their number; `run_scene` has one.
 """
 
 import math

@@ -1,9 +1,7 @@
-"""Outcome of each trial of a measure: which ones seated, which ones lack what is measured and by how much.
+"""Outcome of each trial of a measure: which ones seated, which ones lack what is measured and by how much; statuses.
 
 Statistics of values are of the assembled trials. What is out of limits is counted of all of them, and a build that
 lacks what is measured (its parts overlap) is below every lower limit.
-
-Statuses of a trial, in the words of its system.
 """
 
 import math

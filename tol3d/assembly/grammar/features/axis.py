@@ -146,4 +146,4 @@ class ConeSpec(OneFaceSpec):
             raise refused(field, "diameters of 0 mm or more at both its ends", f"{min(ends):.6g} mm")
         if not low < math.atan(abs(slope)) < high:
             raise refused(field, "two diameters that differ, else it is a cylinder or a face",
-                          " and ".join(f"{own:g} mm" for own in ends))  # fmt: skip
+                          " and ".join(f"{end:g} mm" for end in ends))  # fmt: skip

@@ -86,7 +86,7 @@ class SelectorSpec(Strict):
             expected = "a face, or a kind with a diameter or a point near it: tol3d features FILE lists lines to paste"
             raise refused("", expected, "neither")
         if self.faces is not None:
-            if wrong := next((own for own in self.faces if not NUMBER.fullmatch(own)), None):
+            if wrong := next((face for face in self.faces if not NUMBER.fullmatch(face)), None):
                 raise refused("faces", 'numbers of faces, such as "#764"', repr(wrong))
             if beside := self.model_fields_set & {"face", "near", "within", "count", "diameter", *DRAWN}:
                 raise refused(min(beside), "none beside `faces`, which say it all", "both")

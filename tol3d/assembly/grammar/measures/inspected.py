@@ -206,7 +206,9 @@ class InspectedSetSpec(FeatureMeasureSpec):
         _refuse_other_features(self.features)
         if self.modifier is not None and self.surfaces:
             raise refused("modifier", "none of surfaces, which count with their size", self.modifier)
-        if (own := next((own for own in self.named_datums if own.gauge is not None), None)) is not None:
+        if (
+            own := next((named_datum for named_datum in self.named_datums if named_datum.gauge is not None), None)
+        ) is not None:
             raise refused("datums", "datums regardless of size, for an inspected set takes no gauge", own.key)
         return self
 

@@ -77,15 +77,17 @@ class LocatingSpec(PlacingSpec):
                 found = ((key, self._round(own, drawing.kind(own), drawing.kind(other))) for key, own, other in sides)
                 yield from (((*path, key), words) for key, words in islice(((k, w) for k, w in found if w), 1))
 
-    def _round(self, name: str, own: FeatureUnion, other: FeatureUnion) -> str:
+    def _round(self, name: str, feature_union: FeatureUnion, other: FeatureUnion) -> str:
         """Error text for a round feature; "" where it fits."""
-        if own.kind not in ROUND or not (self.acts.rocks or other.kind == "plane"):
+        if feature_union.kind not in ROUND or not (self.acts.rocks or other.kind == "plane"):
             return ""
-        words = f"expected a point or a plane, got {name!r}, which is {own.words}: its middle would lie there"
+        words = f"expected a point or a plane, got {name!r}, which is {feature_union.words}: its middle would lie there"
         remedy = "name the point of its surface that touches"
         if self.acts.rocks:
             return f"{words}; {remedy}, for a rest has no round contacts"
-        return f"{words}; {remedy}" if own.kind == "cone" else f"{words}; take a move of kind touch, or {remedy}"
+        return (
+            f"{words}; {remedy}" if feature_union.kind == "cone" else f"{words}; take a move of kind touch, or {remedy}"
+        )
 
 
 class ThreeTwoOneSpec(LocatingSpec):

@@ -171,7 +171,7 @@ class PlaySpec(PlacingSpec):
     @property
     def fitted(self) -> Sequence[FeatureName]:
         bolts = (pair.through.of for pair in self.engaged if pair.through is not None)
-        return [*(own for pair in self.engaged for own in (pair.from_, pair.to)), *(own for own in bolts if own)]
+        return [*(own for pair in self.engaged for own in (pair.from_, pair.to)), *(bolt for bolt in bolts if bolt)]
 
     def floats_by_pairs(self, drawing: DrawnFeatures) -> bool:
         """True if a random float draws each pin in its own clearance, not the part in the room of all."""

@@ -104,7 +104,9 @@ class SolidSpec(GrowingSpec):
         if not self.features and self.like is None:
             raise refused("features", "features, or `like: another part`", "neither")
         for name, feature in self.features.items():
-            if twice := next((own for own in feature.members(name) if own != name and own in self.features), None):
+            if twice := next(
+                (member for member in feature.members(name) if member != name and member in self.features), None
+            ):
                 expected = f"a name of its own, for the pattern {name!r} has such a feature"
                 raise refused(f"features.{twice}", expected, shown(twice))
         if self.builder is not None and self.like is not None:

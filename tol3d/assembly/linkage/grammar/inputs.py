@@ -46,7 +46,7 @@ class InputDeviationSpec(Strict):
     @property
     def is_angle(self) -> bool:
         """True if it is an angle, not a length."""
-        return any(own.dimension == "angle" for own in self.distribution.quantities().values())
+        return any(quantity.dimension == "angle" for quantity in self.distribution.quantities().values())
 
 
 class InputSpec(Strict):

@@ -34,21 +34,21 @@ def blocks(reducer: RVSystem | RVLink, contributors: Sequence[Contributor]) -> S
     return (*map(line, _words(own)), *gear_sizes(gears, acts, contributors), _levers(own), *formulas)
 
 
-def _words(own: RVSet) -> list[str]:
-    profile, first = own.profile, own.first
+def _words(rv_set: RVSet) -> list[str]:
+    profile, first = rv_set.profile, rv_set.first
     stage = "the cranks are the input"
     if first is not None:
         backlash = f"normal backlash {1e3 * first.pair.normal_backlash:z.3f} µm"
         stage = f"{first.sun} {first.teeth[0]} and {first.planet} {first.teeth[1]} teeth, {backlash}"
     return [
-        f"{own.name}: {own.carrier} is the output, {own.ring} fixed; ratio {own.ratio}; {own.discs} discs, "
-        f"{own.cranks} cranks; {stage}",
+        f"{rv_set.name}: {rv_set.carrier} is the output, {rv_set.ring} fixed; ratio {rv_set.ratio}; "
+        f"{rv_set.discs} discs, {rv_set.cranks} cranks; {stage}",
         f"{profile.lobes} lobes, {profile.pins} pins of radius {profile.pin_radius:g} mm on "
         f"{profile.pin_circle_radius:g} mm, eccentricity {profile.eccentricity:g} mm: K = {profile.shortening:.6f}, "
         f"largest lever {profile.pitch_radius:.4f} mm at {math.degrees(profile.best_phase):.4f}°, pin radius below "
         f"{largest_pin_radius(profile):.4f} mm",
-        f"pins work whose lever is over {own.window:g} of the largest; with the input held, turns of a disc count "
-        f"{1 / (1 + own.rolling / profile.lobes):.5f} at the output",
+        f"pins work whose lever is over {rv_set.window:g} of the largest; with the input held, turns of a disc count "
+        f"{1 / (1 + rv_set.rolling / profile.lobes):.5f} at the output",
     ]
 
 
@@ -61,15 +61,15 @@ class LeverRow:
     output = Computed(Shows("at the output [″]", ".4f"), lambda own: own.disc / own.held)
 
 
-def _levers(own: RVSet) -> Table:
-    radius, k = own.profile.pitch_radius, own.profile.shortening
+def _levers(rv_set: RVSet) -> Table:
+    radius, k = rv_set.profile.pitch_radius, rv_set.profile.shortening
     rows = {
         "disc displaced across": 1.0,
         "pin outwards": math.sqrt(1 - k**2),
         "pin round, lobe pitch": k,
         "pin radius, lobe profile": 1.0,
     }
-    held = 1 + own.rolling / own.profile.lobes
+    held = 1 + rv_set.rolling / rv_set.profile.lobes
     levers = [(name, LeverRow(ARC_SECONDS * share / radius, held)) for name, share in rows.items()]
     return declared_table("what 1 µm does at the best pin", levers)
 
@@ -117,14 +117,14 @@ def stage_blocks(stages: Mapping[str, CycloidStageSummary]) -> Sequence[PageItem
     return [block for name, own in stages.items() for block in _blocks(name, own)]
 
 
-def _blocks(name: str, own: CycloidStageSummary) -> Sequence[PageItem]:
-    terms = declared_table("source", own.sources.items())
-    totals = declared_table("output", _totals(own))
+def _blocks(name: str, cycloid_stage_summary: CycloidStageSummary) -> Sequence[PageItem]:
+    terms = declared_table("source", cycloid_stage_summary.sources.items())
+    totals = declared_table("output", _totals(cycloid_stage_summary))
     return [
         *titled(f"{name}: transmission error by formula", terms),
         note(WHAT),
         *titled(f"{name}: by formula, added up", totals),
-        *map(note, _notes(own)),
+        *map(note, _notes(cycloid_stage_summary)),
     ]
 
 
@@ -136,8 +136,8 @@ class TotalRow:
     first_principles: Annotated[float | None, Shows(FIRST_PRINCIPLES, ".3f")]
 
 
-def _totals(own: CycloidStageSummary) -> Iterator[tuple[str, TotalRow]]:
-    paper, ours = own.by_formula, own.first_principles
+def _totals(cycloid_stage_summary: CycloidStageSummary) -> Iterator[tuple[str, TotalRow]]:
+    paper, ours = cycloid_stage_summary.by_formula, cycloid_stage_summary.first_principles
     keys = {
         "cycloid stage, ±3σ": "cycloid_arcsec",
         "carrier, ±3σ": "carrier_arcsec",
@@ -148,16 +148,27 @@ def _totals(own: CycloidStageSummary) -> Iterator[tuple[str, TotalRow]]:
         yield words, TotalRow(None if paper is None else paper.value(key), ours.value(key))
         if paper is not None and key == "cycloid_arcsec":
             yield "  99.73 % half-range of its law", TotalRow(paper.cycloid_half_range_arcsec, ours.cycloid_arcsec)
-    if own.sun_held is not None:
-        held = own.sun_held * ours.root_sum_square_arcsec
-        yield f"  times {own.sun_held:.5f}, sun held", TotalRow(None if paper is None else "", held)
+    if cycloid_stage_summary.sun_held is not None:
+        held = cycloid_stage_summary.sun_held * ours.root_sum_square_arcsec
+        yield f"  times {cycloid_stage_summary.sun_held:.5f}, sun held", TotalRow(None if paper is None else "", held)
 
 
-def _notes(own: CycloidStageSummary) -> list[str]:
-    if own.by_formula is None:
-        return [f"not in these sums: {', '.join(own.left_out)}"] if own.left_out else []
+def _notes(cycloid_stage_summary: CycloidStageSummary) -> list[str]:
+    if cycloid_stage_summary.by_formula is None:
+        return (
+            [f"not in these sums: {', '.join(cycloid_stage_summary.left_out)}"]
+            if cycloid_stage_summary.left_out
+            else []
+        )
     law = (
         "the paper's pin circle is a normal length times the sine of a random phase, which is not normal: ±3σ covers "
-        f"{own.by_formula.cycloid_coverage_percent:.2f} % of the cycloid stage"
+        f"{cycloid_stage_summary.by_formula.cycloid_coverage_percent:.2f} % of the cycloid stage"
     )
-    return [law, *([f"not in the formula: {', '.join(own.left_out)}"] if own.left_out else [])]
+    return [
+        law,
+        *(
+            [f"not in the formula: {', '.join(cycloid_stage_summary.left_out)}"]
+            if cycloid_stage_summary.left_out
+            else []
+        ),
+    ]

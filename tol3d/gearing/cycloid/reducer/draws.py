@@ -47,15 +47,15 @@ OF_GEARS = (ToothThicknessSpec, EccentricitySpec, ToothRunOutSpec)
 OF_A_CHOICE = (PinPositionSpec, CrankEccentricitySpec, CarrierHoleSpec, BearingPlaySpec)
 
 
-def acts_of(scene: Scene, own: RVSet, name: str, spec: Any) -> Acts:
+def acts_of(scene: Scene, rv_set: RVSet, name: str, spec: Any) -> Acts:
     """Effect of a tolerance on the reducer.
 
     Raises:
         SceneError: it acts on nothing of an RV reducer, or on something not stated.
     """
-    if isinstance(spec, DiscTiltSpec) and own.width is None:
+    if isinstance(spec, DiscTiltSpec) and rv_set.width is None:
         words = f"expected the width of the disc, over which it tilts by {name!r}, such as 'width: 20 mm'; got none"
-        raise scene.refuse(("parts", own.disc), words)
+        raise scene.refuse(("parts", rv_set.disc), words)
     if type(spec) in OF_THE_STAGE:
         return Acts(OF_THE_STAGE[type(spec)])
     if isinstance(spec, PinPositionSpec):
@@ -66,16 +66,16 @@ def acts_of(scene: Scene, own: RVSet, name: str, spec: Any) -> Acts:
     if isinstance(spec, CarrierHoleSpec):
         return Acts("carrier hole" if spec.each == "hole" else "carrier circle")
     if isinstance(spec, BearingPlaySpec):
-        return Acts("disc play" if spec.of == own.disc else "carrier play", least=0.0)
+        return Acts("disc play" if spec.of == rv_set.disc else "carrier play", least=0.0)
     if isinstance(spec, OF_GEARS):
-        return _of_a_gear(scene, own, name, spec)
+        return _of_a_gear(scene, rv_set, name, spec)
     words = ", ".join(str(kind_of(kind)) for kind in (*OF_THE_STAGE, *OF_A_CHOICE, *OF_GEARS))
     sentence = f"expected of an RV reducer one of {words}, got {kind_of(type(spec))}"
     raise scene.refuse(("tolerances", name, "kind"), sentence)
 
 
-def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | TeethOffAxisSpec) -> Acts:
-    first = own.first
+def _of_a_gear(scene: Scene, rv_set: RVSet, name: str, spec: ToothThicknessSpec | TeethOffAxisSpec) -> Acts:
+    first = rv_set.first
     assert first is not None  # other gears take part in no move
     of_sun = spec.of == first.sun
     if isinstance(spec, TeethOffAxisSpec):
@@ -87,9 +87,9 @@ def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | T
     return Acts("sun thickness" if of_sun else "planet thickness", spec.of, counted, spec.over)
 
 
-def draw_of(scene: Scene, own: RVSet, acts: Acts, spec: Any) -> Draw:
+def draw_of(scene: Scene, rv_set: RVSet, acts: Acts, spec: Any) -> Draw:
     """Draw of the components of a tolerance."""
-    reach, profile = EFFECTS[acts.effect], own.profile
-    counts = {"pin": profile.pins, "lobe": profile.lobes, "disc": own.discs}
-    each = [numbered(word, counts.get(word, own.cranks)) for word in reach.each if word]
+    reach, profile = EFFECTS[acts.effect], rv_set.profile
+    counts = {"pin": profile.pins, "lobe": profile.lobes, "disc": rv_set.discs}
+    each = [numbered(word, counts.get(word, rv_set.cranks)) for word in reach.each if word]
     return drawn(law_of(scene, spec), tuple(map(" ".join, product(*each))) if each else (), planar=reach.planar)

@@ -24,7 +24,7 @@ OneMesh = Callable[[RVSet, RVDeviated, Array, int, Flank], Array]
 
 
 def crank_turns(
-    own: RVSet, deviated: RVDeviated, turns: Array, sense: float, one_mesh: OneMesh
+    rv_set: RVSet, deviated: RVDeviated, turns: Array, sense: float, one_mesh: OneMesh
 ) -> tuple[Array, Places]:
     """Turn of the throws beyond their place (trials, positions) [rad], and the planet that stops them.
 
@@ -33,27 +33,27 @@ def crank_turns(
         sense: of the carrier's turn; cranks turn the other way.
     """
     shape = len(deviated.sun_thickness), turns.shape[1]
-    if own.first is None:
+    if rv_set.first is None:
         return np.zeros(shape), np.zeros(shape, dtype=np.int64)
     flank = LEFT if sense < 0 else RIGHT
-    found = np.stack([throw_turn(own, deviated, turns, crank, flank, one_mesh) for crank in range(own.cranks)])
+    found = np.stack([throw_turn(rv_set, deviated, turns, crank, flank, one_mesh) for crank in range(rv_set.cranks)])
     first = found.argmin(axis=0) if sense < 0 else found.argmax(axis=0)
     return np.take_along_axis(found, first[None], axis=0)[0], first
 
 
-def throw_turn(own: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, one_mesh: OneMesh) -> Array:
+def throw_turn(rv_set: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, one_mesh: OneMesh) -> Array:
     """Turn of one crank's throws (trials, positions) [rad]: its planet's, which they lead by their phase."""
-    return one_mesh(own, deviated, turns, crank, flank) + deviated.stage.crank_phases[:, crank, None]
+    return one_mesh(rv_set, deviated, turns, crank, flank) + deviated.stage.crank_phases[:, crank, None]
 
 
-def held_stage(own: RVSet, deviated: RVDeviated) -> Deviated:
+def held_stage(rv_set: RVSet, deviated: RVDeviated) -> Deviated:
     """The cycloid stage, its throws parallel where discs hold them so; cranks that are the input keep their phases."""
     stage = deviated.stage
-    return stage if own.first is None else replace(stage, crank_phases=np.zeros_like(stage.crank_phases))
+    return stage if rv_set.first is None else replace(stage, crank_phases=np.zeros_like(stage.crank_phases))
 
 
 def placed_mesh(
-    own: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, carried: float | Array = 0.0
+    rv_set: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, carried: float | Array = 0.0
 ) -> Array:
     """Turn of one planet (trials, positions) [rad] until its flank touches the sun's, gears as they lie.
 
@@ -62,8 +62,8 @@ def placed_mesh(
         carried: turn of the carrier beyond its place while the sun stands (trials, positions) [rad]. 100 arc
             seconds turn an eccentricity of 10 um by 5 nm.
     """
-    pair, sizes = own.pair, (len(deviated.sun_thickness), turns.shape[1])
-    sun, planet = angles(own, turns, crank)
+    pair, sizes = rv_set.pair, (len(deviated.sun_thickness), turns.shape[1])
+    sun, planet = angles(rv_set, turns, crank)
     thicker = deviated.sun_thickness + deviated.planet_thickness[:, crank]
     found = np.empty(sizes)
     planet_turns(
@@ -79,7 +79,7 @@ def placed_mesh(
             np.require(each, dtype=np.float64, requirements=["C", "W"])
             for each in (
                 as_points(np.exp(1j * sun)), as_points(np.exp(1j * planet)), deviated.sun_offset,
-                deviated.planet_offset[:, crank], as_points(_carried(own, deviated, crank)),
+                deviated.planet_offset[:, crank], as_points(_carried(rv_set, deviated, crank)),
                 thicker * math.cos(pair.pinion.pressure_angle) / 2 - pair.normal_backlash / 2,
                 np.broadcast_to(carried, sizes),
             )
@@ -89,7 +89,7 @@ def placed_mesh(
     return found
 
 
-def first_order_mesh(own: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank) -> Array:
+def first_order_mesh(rv_set: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank) -> Array:
     """The same to first order.
 
     Along the line of action, with alpha the working pressure angle and sigma the flank,
@@ -99,10 +99,10 @@ def first_order_mesh(own: RVSet, deviated: RVDeviated, turns: Array, crank: int,
     of a planet displaced against its sun by d_r outwards and d_t counter-clockwise, of thicker teeth and of the nominal
     backlash.
     """
-    sun, planet = angles(own, turns, crank)
-    pair = own.pair
+    sun, planet = angles(rv_set, turns, crank)
+    pair = rv_set.pair
     alpha = pair.working_pressure_angle
-    apart = _carried(own, deviated, crank)[:, None] + as_complex(deviated.planet_offset[:, crank])[:, None] * np.exp(
+    apart = _carried(rv_set, deviated, crank)[:, None] + as_complex(deviated.planet_offset[:, crank])[:, None] * np.exp(
         1j * planet
     )
     apart = apart - as_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun)
@@ -113,7 +113,7 @@ def first_order_mesh(own: RVSet, deviated: RVDeviated, turns: Array, crank: int,
 
 
 def add_rates(
-    own: RVSet, rates: RVDeviated, turns: Array, planets: Places, flank: Flank, factor: float | Array
+    rv_set: RVSet, rates: RVDeviated, turns: Array, planets: Places, flank: Flank, factor: float | Array
 ) -> None:
     """Add the derivatives of the first planet's turn by each deviation, times a factor.
 
@@ -124,14 +124,14 @@ def add_rates(
         flank: of the sun.
         factor: of a turn of the cranks, one or by trial.
     """
-    if own.first is None:
+    if rv_set.first is None:
         return
-    pair = own.pair
+    pair = rv_set.pair
     rows, alpha, arm = np.arange(len(turns)), pair.working_pressure_angle, pair.wheel.base_radius
     push = factor / arm * complex(-flank * math.sin(alpha), math.cos(alpha))
     thicker = factor / arm * flank * math.cos(pair.pinion.pressure_angle) / 2
-    relative = own.azimuths[planets]
-    sun = _sun_angle(own, turns) - relative
+    relative = rv_set.azimuths[planets]
+    sun = _sun_angle(rv_set, turns) - relative
     planet = pair.driven_angle(sun)
     carried = as_points(push * np.exp(1j * relative))
     rates.sun_offset[...] += as_points(-push * np.exp(-1j * sun))
@@ -143,18 +143,20 @@ def add_rates(
     rates.stage.carrier_offsets[...] += carried
 
 
-def angles(own: RVSet, turns: Array, crank: int) -> tuple[Array, Array]:
+def angles(rv_set: RVSet, turns: Array, crank: int) -> tuple[Array, Array]:
     """Turns of sun and planet in the frame of their mesh [rad], at turns of the output."""
-    sun = _sun_angle(own, turns) - own.azimuths[crank]
-    return sun, own.pair.driven_angle(sun)
+    sun = _sun_angle(rv_set, turns) - rv_set.azimuths[crank]
+    return sun, rv_set.pair.driven_angle(sun)
 
 
-def _sun_angle(own: RVSet, turns: Array) -> Array:
+def _sun_angle(rv_set: RVSet, turns: Array) -> Array:
     """Angle of the sun against the carrier [rad], less whole turns after which the planets stand as before."""
-    return np.asarray(2 * math.pi * np.mod(float(own.gear_ratio * own.profile.pins) * turns, own.gear_ratio.numerator))
+    return np.asarray(
+        2 * math.pi * np.mod(float(rv_set.gear_ratio * rv_set.profile.pins) * turns, rv_set.gear_ratio.numerator)
+    )
 
 
-def _carried(own: RVSet, deviated: RVDeviated, crank: int) -> Complex:
+def _carried(rv_set: RVSet, deviated: RVDeviated, crank: int) -> Complex:
     """Offset of a crank's axis from its place (trials,) in the frame of its mesh [mm]."""
     off = as_complex(deviated.stage.carrier_offsets) + as_complex(deviated.stage.carrier_holes[:, crank])
-    return np.asarray(off * np.exp(-1j * own.azimuths[crank]))
+    return np.asarray(off * np.exp(-1j * rv_set.azimuths[crank]))

@@ -266,16 +266,16 @@ THREE_SIGMA: Final = 3.0 * math.degrees(1.0) * 3600.0  # arc seconds a radian of
 
 
 def stages_by_formula(
-    own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]
+    rv_set: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]
 ) -> Mapping[str, CycloidStageSummary]:
     """Summary of a reducer's stage by its name; nothing if the formula knows none of its contributors."""
-    first = own.first
-    drawn = ((each.name, acts[each.name].effect, each.draw.sigma) for each in contributors)
+    first = rv_set.first
+    drawn = ((contributor.name, acts[contributor.name].effect, contributor.draw.sigma) for contributor in contributors)
     sources = PaperSources.of(drawn)
     if not sources.tolerances:
         return {}
-    held = None if first is None else sun_held_factor(own.profile.lobes, *first.teeth)
-    return {own.name: stage_by_formula(own.profile, sources, held, by_formula=own.by_formula)}
+    held = None if first is None else sun_held_factor(rv_set.profile.lobes, *first.teeth)
+    return {rv_set.name: stage_by_formula(rv_set.profile, sources, held, by_formula=rv_set.by_formula)}
 
 
 def stage_by_formula(

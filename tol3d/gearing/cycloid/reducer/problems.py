@@ -14,7 +14,7 @@ from tol3d.study.system.system import KeyPath
 
 
 def problems_at(
-    own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor], deviated: RVDeviated
+    rv_set: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor], deviated: RVDeviated
 ) -> Iterator[tuple[KeyPath, str]]:
     """Lobes and pins that overlap with every contributor at its mean, and first stages without backlash there.
 
@@ -32,22 +32,22 @@ def problems_at(
     stage = deviated.stage
     circle, radius = float(stage.pins[..., 0].mean()), float(stage.pin_radii.mean())
     material = float(np.max(stage.lobe_profile.mean(axis=2)))
-    least = least_gap(own.profile, circle, radius + material)
+    least = least_gap(rv_set.profile, circle, radius + material)
     if least < -LEAST_GAP:
-        enough = own.profile.modification.offset - least
+        enough = rv_set.profile.modification.offset - least
         yield (
-            ("parts", own.disc, "offset"),
+            ("parts", rv_set.disc, "offset"),
             f"lobes and pins interfere at the mean build by {-1e3 * least:.3f} um: expected an offset of at least "
-            f"{1e3 * enough:.3f} um with these means, got {1e3 * own.profile.modification.offset:g} um",
+            f"{1e3 * enough:.3f} um with these means, got {1e3 * rv_set.profile.modification.offset:g} um",
         )
-    if own.first is not None:
-        pair = own.first.pair
+    if rv_set.first is not None:
+        pair = rv_set.first.pair
         thicker = float(deviated.sun_thickness[0] + deviated.planet_thickness[0].max())
         backlash = pair.normal_backlash - thicker * np.cos(pair.pinion.pressure_angle)
         if backlash < -ROUNDING:
             yield (
-                ("parts", own.first.sun),
-                f"the teeth of {own.first.sun} and {own.first.planet} interfere at the mean build: a normal "
+                ("parts", rv_set.first.sun),
+                f"the teeth of {rv_set.first.sun} and {rv_set.first.planet} interfere at the mean build: a normal "
                 f"backlash of {1e3 * backlash:.3f} um at a centre distance of {pair.centre_distance:.4f} mm, the "
                 f"radius of the circle of crankshafts; thin the teeth or shift the profiles ({pair.remedy})",
             )

@@ -29,14 +29,14 @@ def regress_touching(
     trials = system.trials_again(columns)
     turns = system.turns_at(measure, trials)
     slopes = slopes_at(system, measure, system.deviated(trials), turns)
-    for own in contributors:
-        values, acts = component_values(own, columns), system.acts[own.name]
-        scale = system.own.profile.pitch_radius / (own.draw.sigma or 1.0)
-        if has_square(own):
-            rows[own.name][0] = scale * slopes.term(system.own, acts, values)
-            np.square(rows[own.name][0], out=rows[own.name][1])
+    for contributor in contributors:
+        values, acts = component_values(contributor, columns), system.acts[contributor.name]
+        scale = system.own.profile.pitch_radius / (contributor.draw.sigma or 1.0)
+        if has_square(contributor):
+            rows[contributor.name][0] = scale * slopes.term(system.own, acts, values)
+            np.square(rows[contributor.name][0], out=rows[contributor.name][1])
             continue
-        for k, row in enumerate(rows[own.name]):
+        for k, row in enumerate(rows[contributor.name]):
             alone = np.zeros_like(values)
             alone[:, k] = values[:, k]
             row[...] = scale * slopes.term(system.own, acts, alone)

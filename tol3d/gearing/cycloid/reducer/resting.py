@@ -44,7 +44,7 @@ from tol3d.numerics.programme import NO_ROOM, OK, STALLED
 from tol3d.study.system.method import ANALYTIC_METHOD
 
 
-def rest_rates(own: RVSet, deviated: RVDeviated, turns: Array, phis: Array, forces: Forces) -> RVDeviated:
+def rest_rates(rv_set: RVSet, deviated: RVDeviated, turns: Array, phis: Array, forces: Forces) -> RVDeviated:
     """Rates of trials, in the form of their deviations [rad/mm or rad/rad].
 
     A tilt closes gaps whatever its sign: its rates are those on its side.
@@ -53,29 +53,29 @@ def rest_rates(own: RVSet, deviated: RVDeviated, turns: Array, phis: Array, forc
         turns: of the output (trials,).
         phis: crank angles (trials,) [rad].
     """
-    found = RVDeviated.nothing(own, len(turns))
-    _of_planets(own, found, turns, forces)
-    _of_pins(own, found, deviated.disc_tilts, phis, forces)
-    _of_bearings(own, found.stage, phis, forces)
+    found = RVDeviated.nothing(rv_set, len(turns))
+    _of_planets(rv_set, found, turns, forces)
+    _of_pins(rv_set, found, deviated.disc_tilts, phis, forces)
+    _of_bearings(rv_set, found.stage, phis, forces)
     found.disc_play[...] = np.swapaxes(forces.disc_play, 1, 2)
     found.carrier_play[...] = forces.carrier_play
     return found
 
 
-def _of_planets(own: RVSet, found: RVDeviated, turns: Array, forces: Forces) -> None:
+def _of_planets(rv_set: RVSet, found: RVDeviated, turns: Array, forces: Forces) -> None:
     """Add the rates of the teeth; planets lie where the cranks do, whose bearings hold them."""
-    for crank in range(own.cranks):
+    for crank in range(rv_set.cranks):
         planets = np.full(len(turns), crank)
         for side, flank in enumerate((RIGHT, LEFT)):
-            add_rates(own, found, turns, planets, flank, forces.planets[:, crank, side])
+            add_rates(rv_set, found, turns, planets, flank, forces.planets[:, crank, side])
     found.stage.carrier_holes[...] = 0.0
     found.stage.carrier_offsets[...] = 0.0
 
 
-def _of_pins(own: RVSet, found: RVDeviated, tilts: Array, phis: Array, forces: Forces) -> None:
-    profile, stage, rows = own.profile, own.linear, np.arange(len(phis))[:, None]
-    nothing, azimuths = Deviated.nothing(1, profile.pins, own.discs, own.cranks), evenly(profile.pins)
-    for disc in range(own.discs):
+def _of_pins(rv_set: RVSet, found: RVDeviated, tilts: Array, phis: Array, forces: Forces) -> None:
+    profile, stage, rows = rv_set.profile, rv_set.linear, np.arange(len(phis))[:, None]
+    nothing, azimuths = Deviated.nothing(1, profile.pins, rv_set.discs, rv_set.cranks), evenly(profile.pins)
+    for disc in range(rv_set.discs):
         force = forces.pins[:, disc]
         _, lever, normal = stage.nominal_gaps(nothing, disc, phis, None)
         lobes = stage.lobes_at(disc, phis)
@@ -84,21 +84,21 @@ def _of_pins(own: RVSet, found: RVDeviated, tilts: Array, phis: Array, forces: F
         np.add.at(found.stage.lobe_profile[:, disc], (rows, lobes), -force)
         pitch = lever * profile.shortening / profile.pitch_radius
         np.add.at(found.stage.lobe_pitch[:, disc], (rows, lobes), -force * pitch)
-        if own.width is not None:
+        if rv_set.width is not None:
             across = -1j * normal * np.exp(1j * phis / profile.lobes)[:, None]
             side = np.sign((np.conj(across) * as_complex(tilts[:, disc])[:, None]).real)
-            found.disc_tilts[:, disc] = as_points(-own.width / 2 * (force * side * across).sum(axis=1))
+            found.disc_tilts[:, disc] = as_points(-rv_set.width / 2 * (force * side * across).sum(axis=1))
 
 
-def _of_bearings(own: RVSet, found: Deviated, phis: Array, forces: Forces) -> None:
-    ahead = np.exp(1j * phis * (1 + 1 / own.profile.lobes))
+def _of_bearings(rv_set: RVSet, found: Deviated, phis: Array, forces: Forces) -> None:
+    ahead = np.exp(1j * phis * (1 + 1 / rv_set.profile.lobes))
     discs, carrier = as_complex(forces.discs), -as_complex(forces.carrier)
-    swung = 1j * own.profile.eccentricity * np.exp(1j * own.linear.throws)
+    swung = 1j * rv_set.profile.eccentricity * np.exp(1j * rv_set.linear.throws)
     thrown = -discs * np.conj(ahead)[:, None, None]
     found.disc_holes[...] = np.swapaxes(forces.discs, 1, 2)
     found.disc_offsets[...] = -as_points(discs.sum(axis=1))
     found.crank_errors[...] = as_points(thrown)
-    if own.first is None:  # else those of planets
+    if rv_set.first is None:  # else those of planets
         found.crank_phases[...] = (np.conj(thrown) * swung).real.sum(axis=2)
     found.carrier_holes[...] = as_points(carrier)
     found.carrier_offsets[...] = as_points(carrier.sum(axis=1))
@@ -132,18 +132,18 @@ class ExactResting:
         return Turned(found.turns - beta / own.crank_arm, places, planets, near, codes=codes)
 
 
-def play_of(own: RVSet, deviated: RVDeviated, turns: Array, beta: Array, one_mesh: OneMesh) -> Play:
+def play_of(rv_set: RVSet, deviated: RVDeviated, turns: Array, beta: Array, one_mesh: OneMesh) -> Play:
     """Play of a reducer's bearings and planets, with its cranks beta (trials, positions) ahead."""
     disc = np.maximum(np.swapaxes(deviated.disc_play, 1, 2), 0.0)
     carrier = np.maximum(deviated.carrier_play, 0.0)
-    free = np.zeros((*beta.shape, own.cranks, 2))
-    if own.first is None:
+    free = np.zeros((*beta.shape, rv_set.cranks, 2))
+    if rv_set.first is None:
         return Play(disc, carrier, free)
-    for crank in range(own.cranks):
+    for crank in range(rv_set.cranks):
         for side, flank in enumerate((RIGHT, LEFT)):
-            free[:, :, crank, side] = throw_turn(own, deviated, turns, crank, flank, one_mesh) - beta
+            free[:, :, crank, side] = throw_turn(rv_set, deviated, turns, crank, flank, one_mesh) - beta
     free[..., 0], free[..., 1] = np.minimum(free[..., 0], 0.0), np.maximum(free[..., 1], 0.0)
-    pair = own.first.pair
+    pair = rv_set.first.pair
     alpha, arm = pair.working_pressure_angle, pair.wheel.base_radius
     return Play(disc, carrier, free, (math.cos(alpha) / arm, math.sin(alpha) / arm))
 
@@ -229,14 +229,14 @@ def _put_together(known: Sequence[Known]) -> Forces:
     )
 
 
-def exact_turning(own: RVSet) -> Turning:
+def exact_turning(rv_set: RVSet) -> Turning:
     """Turning of a reducer by the exact method."""
-    return ExactResting(own) if own.plays else ExactTurning(own)
+    return ExactResting(rv_set) if rv_set.plays else ExactTurning(rv_set)
 
 
-def linear_turning(own: RVSet) -> Turning:
+def linear_turning(rv_set: RVSet) -> Turning:
     """Turning of a reducer by the analytic method."""
-    return LinearResting(own) if own.plays else LinearTurning(own)
+    return LinearResting(rv_set) if rv_set.plays else LinearTurning(rv_set)
 
 
 SOLVERS: Final[Mapping[str, Solver]] = {
@@ -248,15 +248,17 @@ SOLVERS: Final[Mapping[str, Solver]] = {
 }
 
 
-def linear_rates(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, found: Turned | None = None) -> RVDeviated:
+def linear_rates(
+    rv_set: RVSet, deviated: RVDeviated, turns: Array, sense: int, found: Turned | None = None
+) -> RVDeviated:
     """Derivatives of the turn at output turns (trials,) by each deviation, at the contacts found or to be found."""
-    if own.plays:
-        return LinearResting(own).rates(deviated, turns, sense)
-    turning = LinearTurning(own)
+    if rv_set.plays:
+        return LinearResting(rv_set).rates(deviated, turns, sense)
+    turning = LinearTurning(rv_set)
     touching = found or turning.turned(deviated, turns[:, None], sense)
     return turning.rates(deviated.disc_tilts, turns, touching, sense)
 
 
-def lost_motion_rates(own: RVSet, deviated: RVDeviated, turns: Array) -> RVDeviated:
+def lost_motion_rates(rv_set: RVSet, deviated: RVDeviated, turns: Array) -> RVDeviated:
     """The same of the free turn between both ends."""
-    return linear_rates(own, deviated, turns, 1).plus(linear_rates(own, deviated, turns, -1), -1.0)
+    return linear_rates(rv_set, deviated, turns, 1).plus(linear_rates(rv_set, deviated, turns, -1), -1.0)

@@ -78,7 +78,7 @@ class ExactTurning:
         return Turned(turned, found.places[..., 0], planets, near)
 
 
-def output_turns(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, found: Array, beta: Array) -> Array:
+def output_turns(rv_set: RVSet, deviated: RVDeviated, turns: Array, sense: int, found: Array, beta: Array) -> Array:
     """Turn of the output (trials, positions) [rad], given the part found for the cycloid stage.
 
     Args:
@@ -87,20 +87,20 @@ def output_turns(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, fou
         beta: turn of the cranks with the carrier in its place. By its turn they turn less than a thousandth of
             that more, which is nothing to the discs.
     """
-    there = partial(placed_mesh, carried=found - beta / own.crank_arm)
-    return found - crank_turns(own, deviated, turns, sense, there)[0] / own.crank_arm
+    there = partial(placed_mesh, carried=found - beta / rv_set.crank_arm)
+    return found - crank_turns(rv_set, deviated, turns, sense, there)[0] / rv_set.crank_arm
 
 
-def leans_of(own: RVSet, deviated: RVDeviated) -> Array | None:
+def leans_of(rv_set: RVSet, deviated: RVDeviated) -> Array | None:
     """Lean of the discs (trials, discs, 3): see `leaning`; None if they lie flat."""
-    if own.width is None or not np.any(deviated.disc_tilts):
+    if rv_set.width is None or not np.any(deviated.disc_tilts):
         return None
-    return leaning(deviated.disc_tilts, own.width)
+    return leaning(deviated.disc_tilts, rv_set.width)
 
 
-def led_angles(own: RVSet, turns: Array, beta: Array) -> Array:
+def led_angles(rv_set: RVSet, turns: Array, beta: Array) -> Array:
     """The angle of cranks that lead by beta, as cranks that do not."""
-    return np.asarray(own.crank_angles(turns) + beta * (own.profile.lobes / own.crank_arm))
+    return np.asarray(rv_set.crank_angles(turns) + beta * (rv_set.profile.lobes / rv_set.crank_arm))
 
 
 @dataclass(frozen=True)

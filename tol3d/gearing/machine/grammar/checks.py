@@ -92,7 +92,7 @@ def joints_named_twice(scene: Scene) -> Iterator[Problem]:
 def unfit_worst_errors(scene: Scene) -> Iterator[Problem]:
     """Worst errors over poses that no move has, or over the flanks of too many joints."""
     poses = pose_names(scene)
-    driven = [own for spec in scene.of(OpenChainSpec).values() for own in spec.joints.values() if own.train]
+    driven = [joint for spec in scene.of(OpenChainSpec).values() for joint in spec.joints.values() if joint.train]
     for name, spec in scene.of(WorstPositionErrorSpec).items():
         if not poses:
             yield ("measures", name, "kind"), "expected a move with poses beside it, such as an open_chain, got none"

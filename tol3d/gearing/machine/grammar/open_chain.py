@@ -107,7 +107,7 @@ class OpenChainSpec(AssemblyMoveSpec):
 
     @property
     def seats(self) -> Sequence[tuple[str, Sequence[DatumSpec]]]:
-        return [(part_of(own.between[1]), own.seat) for own in self.joints.values() if own.seat]
+        return [(part_of(joint.between[1]), joint.seat) for joint in self.joints.values() if joint.seat]
 
     @property
     def pose_names(self) -> Sequence[str]:

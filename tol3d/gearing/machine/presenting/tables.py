@@ -25,7 +25,7 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     system = simulation.system
     assert isinstance(system, MachineSystem)
     shafts, gears = shafts_table(system.bores), mechanics_blocks(system.gears.model)
-    parts = {own.name for own in system.drawn.measures}
+    parts = {measure.name for measure in system.drawn.measures}
     return (*drawing_blocks(system.drawn), *shafts, *gears, *system_blocks(simulation, parts))
 
 
@@ -35,9 +35,9 @@ def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
     assert isinstance(system, MachineSystem)
     assembly = system.drawn.assembly
     shafts = []
-    for own in system.bores.shafts:
-        parts = dict.fromkeys(assembly.features[bore.feature].part for bore in own.bores)
-        shafts.append(Laid(own.shaft, own.lies, own.move, tuple(parts)))
+    for shaft in system.bores.shafts:
+        parts = dict.fromkeys(assembly.features[bore.feature].part for bore in shaft.bores)
+        shafts.append(Laid(shaft.shaft, shaft.lies, shaft.move, tuple(parts)))
     return parts_tree(assembly, shafts)
 
 
@@ -52,7 +52,7 @@ class ShaftRow(RowOf[HousedShaft]):
 
 def shafts_table(bores: Bores) -> Sequence[PageItem]:
     """Table of the positions of shafts: their bores, and the bores' places along the shaft."""
-    table = declared_table("", [(own.shaft, ShaftRow(own)) for own in bores.shafts])
+    table = declared_table("", [(shaft.shaft, ShaftRow(shaft)) for shaft in bores.shafts])
     return (*titled("shafts in bores", table), note(HELD))
 
 

@@ -48,7 +48,7 @@ class PlanetarySpec(MoveSpec):
         return (
             Reference(("planet",), self.planet, (PlanetSpec,)),
             Reference(("carrier",), self.carrier, (CarrierSpec,)),
-            *(Reference(("meshes", own), own, (GearSpec,)) for own in self.meshes),
+            *(Reference(("meshes", mesh), mesh, (GearSpec,)) for mesh in self.meshes),
             *(Reference(("meshes", own), gear, (GearSpec,)) for own, gear in self.meshes.items()),
             *(Reference((role,), getattr(self, role), shafts) for role in ("held", "input", "output")),
         )
