@@ -1,4 +1,4 @@
-"""Types of arrays, arrays of trials that belong together, and products whose bits do not depend on the number of trials."""
+"""Types of arrays, arrays that belong together, and products whose bits do not depend on the number of trials."""
 
 from collections.abc import Callable
 from dataclasses import fields

@@ -3,7 +3,8 @@
 A page (`page.py`) and a chart (`chart.py`) are data; `sheet.py`, `html/` and `drawn_chart.py` lay them out. Columns of
 tables are declared at the fields that they show (`declared.py`). What is a mechanism's own its presenter adds
 (`presenter.py`): no gear or assembly is known here. Names are loaded when they are first used: a table needs no
-matplotlib, a picture no trimesh, and only `tol3d.report.view` loads pyvista. Read `page.py` and `table.py` first.
+matplotlib, a picture no trimesh, and
+only what shows parts in 3D loads pyvista. Read `page.py` and `table.py` first.
 """
 
 from typing import TYPE_CHECKING

@@ -8,8 +8,8 @@
     tallies     statistics, folded block by block
     results     tasks of workers, attribution, agreement of the methods, the summary
 
-Lower ones know nothing of upper ones, and none knows a gear, a part or a solid. Read `system/system.py` first, then
-`results/task.py`.
+From low to high: none knows those below it in this list, and none knows a gear, a part or a solid. Read
+`system/system.py` first, then `results/task.py`.
 """
 
 from typing import TYPE_CHECKING

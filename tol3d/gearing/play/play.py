@@ -2,7 +2,8 @@
 
 Both methods use this module; each reads single backlashes for itself.
 
-Where parallel load paths join, the play is the intersection of theirs. The free turn of a shaft on one load path is an interval: from where its driven gear rests on the working flank to where
+Where parallel load paths join, the play is the intersection of theirs.
+The free turn of a shaft on one load path is an interval: from where its driven gear rests on the working flank to where
 the other flank touches, links in series added up. Once the path that ends first on either side is known, all is linear
 in the play of each mesh and its rest angle; so derivatives are computed like values. Load paths that share links are
 compared likewise, walk by walk; each of their loops must have some play, or they bind.

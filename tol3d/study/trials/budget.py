@@ -3,8 +3,9 @@
 What builds take is counted in contacts and never timed, so that the same is looked at on any machine, with any number
 of workers. A use that wants less than its share leaves the rest to the others.
 
-Builds that may be made whatever the others want have shares of their own: those that tell what acts (`acting.SHARE`),
-total effects (`attribution.MOST_OF_RUN`), and high–low–mean by the method that does not lead (OTHER_METHOD).
+Builds that may be made whatever the others want have shares of their own: those that tell what acts
+(`acting_contributors.SHARE`), total effects (`attribution.MOST_OF_RUN`), and high–low–mean by the method that does not
+lead (OTHER_METHOD).
 """
 
 from collections.abc import Mapping, Sequence
