@@ -37,10 +37,9 @@ HANGS = 300  # s; a guard against waiting for ever, no claim
 SMALL_BLOCKS = f"""
 import os, sys, time
 from tol3d import cli
-from tol3d.study import blocks
 from tol3d.study.execution import folding
-from tol3d.study import task
-blocks.BLOCK_TRIALS = {BLOCK}
+from tol3d.study.results import task
+task.BLOCK_TRIALS = {BLOCK}
 folding.KEEP_EVERY = 0.0
 made = task.columns_of
 task.columns_of = lambda *arguments: (time.sleep(0.02), made(*arguments))[1]
