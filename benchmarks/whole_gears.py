@@ -10,7 +10,7 @@ from tol3d.cad.solids import display_mesh
 from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import GearSystem
-from tol3d.study.system.trials import mean_deviations, nominal_build
+from tol3d.study.system.stated import mean_deviations, nominal_build
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.simulation import Simulation
 from tol3d.study.trials.study import Study

@@ -29,7 +29,7 @@ COLOURS: Final = 256
 VIEW: Final = ("report/view.py", "report/whole.py", "report/drawn_solids.py")
 CLOSE_UP: Final = (*VIEW, "gearing/presenting/panels.py", "gearing/presenting/gear_display.py")
 CHART: Final = ("report/chart.py", "report/chart_figure.py", "report/drawn_chart.py", "report/measure_charts.py")
-HISTOGRAM: Final = ("report/figures.py", "report/picture.py", "report/share_charts.py", "report/bars.py", *CHART)
+HISTOGRAM: Final = ("report/histogram.py", "report/picture.py", "report/share_charts.py", "report/bars.py", *CHART)
 CURVE_ALONE: Final = """
 from pathlib import Path
 from tol3d import load_scene

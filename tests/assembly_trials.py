@@ -13,7 +13,8 @@ from tol3d.assembly.system import AssemblySystem
 from tol3d.scene import Scene
 from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.system.contributor import Contributor
-from tol3d.study.system.trials import Trials, component_slices, nominal_build
+from tol3d.study.system.stated import component_slices, nominal_build
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.simulation import Simulation
 

@@ -25,7 +25,7 @@ from tol3d.study.runs.run import open_run
 from tol3d.study.system.draw import JointDraw, Scalar
 from tol3d.study.system.each_planar import EachPlanar
 from tol3d.study.system.plain import PlainContributor
-from tol3d.study.system.trials import stated
+from tol3d.study.system.stated import stated
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tol3d.analyses.response import Values, response_of
 from tol3d.simulate import load, simulation_of
-from tol3d.study.system.trials import component_slices
+from tol3d.study.system.stated import component_slices
 from tol3d.study.trials.draws import drawn
 
 PAGE = Path(__file__).parents[2] / "docs" / "drawings.md"

@@ -9,7 +9,7 @@ import pytest
 from assembly_trials import Assembled, assembled, constant, normal, uniform
 from numpy.typing import NDArray
 
-from tol3d.study.system.trials import component_slices, stated
+from tol3d.study.system.stated import component_slices, stated
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,8 @@ from tol3d.assembly.placing.gauged_positions import GaugedPattern
 from tol3d.assembly.torsors.gauged_positions import TurnedOpening
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.system.trials import Trials, stated
+from tol3d.study.system.stated import stated
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]

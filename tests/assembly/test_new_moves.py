@@ -28,7 +28,7 @@ from tol3d.import_path import named
 from tol3d.scene.entry import kind_of
 from tol3d.simulate import simulation_of
 from tol3d.study.system.mechanism import Mechanism
-from tol3d.study.system.trials import component_slices
+from tol3d.study.system.stated import component_slices
 from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]

@@ -17,7 +17,7 @@ from tol3d.contact.certify import certificate
 from tol3d.contact.openings import opening
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
-from tol3d.study.system.trials import stated
+from tol3d.study.system.stated import stated
 from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]

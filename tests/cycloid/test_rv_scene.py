@@ -9,7 +9,7 @@ from places import SCENES
 
 from tol3d import Overrides, Run, SceneError, load_scene, run_scene
 from tol3d.gearing.cycloid.from_scene import rv_system
-from tol3d.study.system.trials import mean_build
+from tol3d.study.system.stated import mean_build
 from tol3d.study.trials.overrides import simulation_of
 
 TEXT = (SCENES / "rv_250aii.yaml").read_text("utf-8")

@@ -28,7 +28,7 @@ from tol3d.cad.step.reading import read_step
 from tol3d.files import FileContent, read_file
 from tol3d.scene import Scene as SceneOfFile
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
-from tol3d.study.system.trials import nominal_build
+from tol3d.study.system.stated import nominal_build
 from tol3d.study.trials.draws import drawn
 
 HOSTILE = (

@@ -33,7 +33,7 @@ from tol3d.gearing.stack_up.term import NominalMesh
 from tol3d.gearing.stack_up.terms import NOTHING, Contribution, contributes
 from tol3d.gears import GearPair
 from tol3d.scene import Grammar
-from tol3d.study.system.trials import stated
+from tol3d.study.system.stated import stated
 
 # what a new kind of tolerance is: four pieces, each of which would be a file of its own ------------------------------
 

@@ -35,8 +35,9 @@ from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
 from tol3d.statistics.distributions import Constant
 from tol3d.study.system.positions import Take
+from tol3d.study.system.stated import stated
 from tol3d.study.system.taken import taken
-from tol3d.study.system.trials import Trials, stated
+from tol3d.study.system.trials import Trials
 
 Over = Literal["random", "at", "turn", "long_period", "swing"]
 

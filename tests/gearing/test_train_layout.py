@@ -21,7 +21,7 @@ from tol3d import load_scene
 from tol3d.gearing.builds.build import build
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gearing.shafts import Carried
-from tol3d.study.system.trials import nominal_build
+from tol3d.study.system.stated import nominal_build
 
 LEFT, RIGHT = -1, 1
 SAME_PLACE = 1e-9  # mm; some hundred times the rounding of a metre

@@ -32,7 +32,8 @@ from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair
 from tol3d.gears.flank import Flank
 from tol3d.study.system.positions import Positions
-from tol3d.study.system.trials import Trials, mean_build, stated
+from tol3d.study.system.stated import mean_build, stated
+from tol3d.study.system.trials import Trials
 
 ARCSEC = 3600 * 180 / math.pi
 REFERENCE = EccentricPair(

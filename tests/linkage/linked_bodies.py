@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.model.statuses import OK
 from tol3d.study.system.method import Answers
-from tol3d.study.system.trials import component_count, component_slices, stated
+from tol3d.study.system.stated import component_count, component_slices, stated
 
 Array = NDArray[np.float64]
 Trial = tuple[Mapping[str, Array], Mapping[str, float]]

@@ -20,7 +20,7 @@ from linkage.mechanisms import ALL
 from linkage.plays import with_plays
 from linkage.random_loops import open_chain, random_loop
 
-from tol3d.study.system.trials import component_slices
+from tol3d.study.system.stated import component_slices
 
 LIMIT = 1e-9  # mm
 MAKERS: dict[str, Callable[[], Linkage]] = {

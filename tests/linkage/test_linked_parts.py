@@ -12,7 +12,7 @@ from linkage.split import split
 from oracles.closed_loops import closed, displaced, followed, pose
 from scipy.optimize import root
 
-from tol3d.study.system.trials import component_count, component_slices, stated
+from tol3d.study.system.stated import component_count, component_slices, stated
 
 SERIES = {
     "slider crank": (slider_crank, [["crank"], ["rod", "slider"]], np.linspace(0.0, 6.0, 4)),

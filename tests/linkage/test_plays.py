@@ -11,7 +11,7 @@ from linkage.plays import with_plays
 from linkage.random_loops import open_chain, random_loop
 from oracles.closed_loops import closed, displaced, followed
 
-from tol3d.study.system.trials import component_slices
+from tol3d.study.system.stated import component_slices
 
 MAKERS: dict[str, Callable[[], Linkage]] = {
     **{name: ALL[name] for name in ("slider crank", "rssr", "swash on swing")},

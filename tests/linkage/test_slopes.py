@@ -12,7 +12,7 @@ from linkage.mechanisms import ALL
 from linkage.plays import with_plays
 from linkage.random_loops import open_chain
 
-from tol3d.study.system.trials import component_count, component_slices, stated
+from tol3d.study.system.stated import component_count, component_slices, stated
 
 STEPS = {"mm": 1e-3, "µm": 1e-3, "um": 1e-3, "1": 0.05}  # mm, shares of a radius of some 0.02 mm; all others rad
 ANGLE = 1e-5

@@ -12,7 +12,7 @@ from linkage.linked_bodies import Part, axis, point
 from linkage.mechanisms import placed, slider_crank
 
 from tol3d.assembly.model.statuses import NO_BUILD, OK
-from tol3d.study.system.trials import component_count, component_slices, stated
+from tol3d.study.system.stated import component_count, component_slices, stated
 
 FRAME = """
   frame:

@@ -10,7 +10,8 @@ from machine.housed import Array
 
 from tol3d import Overrides, load_scene
 from tol3d.gearing.machine.system import MachineSystem
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.stated import component_slices
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.overrides import simulation_of
 
 STAGE = """

@@ -11,7 +11,7 @@ from machine.housed import Array
 from scipy.spatial.transform import Rotation
 
 from tol3d import Overrides, load_scene
-from tol3d.study.system.trials import component_slices
+from tol3d.study.system.stated import component_slices
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.overrides import simulation_of
 

@@ -8,7 +8,7 @@ from places import SCENES
 
 from tol3d import Overrides, run_scene
 from tol3d.simulate import load, simulation_of
-from tol3d.study.system.trials import component_slices
+from tol3d.study.system.stated import component_slices
 from tol3d.study.trials.draws import drawn
 
 GEARS = (SCENES / "housed_gears.yaml").read_text("utf-8")

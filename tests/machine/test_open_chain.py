@@ -30,7 +30,8 @@ from tol3d.gearing.machine.chain import Chain
 from tol3d.gearing.machine.closed_form import with_joints
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.study.system.closed_form import ClosedForm, Share
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.stated import component_slices
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.overrides import simulation_of
 

@@ -12,7 +12,8 @@ from tol3d import Overrides, load_scene
 from tol3d.gearing.cycloid.system import RVSystem
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.planetary.system import PlanetarySystem
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.stated import component_slices
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.overrides import simulation_of
 from tol3d.study.trials.simulation import Simulation

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from tol3d import Overrides, run_scene
 from tol3d.gears import SpurPair
+from tol3d.study.system.stated import mean_deviations, stated
 from tol3d.study.system.system import System
-from tol3d.study.system.trials import mean_deviations, stated
 
 Array = NDArray[np.float64]
 

@@ -25,8 +25,8 @@ from tol3d.gearing.planetary.from_scene import planetary_system
 from tol3d.gearing.planetary.model.deviated import Deviated
 from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
 from tol3d.study.system.plain import PlainMeasure
-from tol3d.study.system.pooled import Spectrum
 from tol3d.study.system.positions import Positions
+from tol3d.study.system.spectrum import Spectrum
 from tol3d.study.system.taken import taken
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.overrides import simulation_of

@@ -16,7 +16,7 @@ from tol3d.gearing.planetary.model.set_mesh import SetGear
 from tol3d.gearing.planetary.system import PlanetarySystem
 from tol3d.gears import InternalGear
 from tol3d.report.check import check_report
-from tol3d.study.system.trials import mean_build
+from tol3d.study.system.stated import mean_build
 from tol3d.study.trials.overrides import simulation_of
 
 TEXT = (SCENES / "reducer_3k.yaml").read_text("utf-8")

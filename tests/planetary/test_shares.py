@@ -13,7 +13,8 @@ from tol3d.gearing.planetary.system import PlanetarySystem
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.method import ANALYTIC_METHOD
 from tol3d.study.system.regressors import regressor_count
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.stated import component_slices
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.columns import columns_of
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.overrides import simulation_of

@@ -137,7 +137,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"functions that write into an argument +│ +{NUMBER}",
         rf"largest file \(lines\) +│ +[\w/.]+ \({NUMBER}\)",
         rf"run_scene: returns to a room left before +│ +{NUMBER}",
-        "run_scene calls .*runs > .*execution",
+        "run_scene calls .*study > .*gearing",
     ),
     "tooth_curves": tuple(
         rf"{own} +│ {take} +│ +10 │ +1 │ +{NUMBER}"

@@ -34,5 +34,5 @@ def test_a_scene_runs_by_name_from_a_built_wheel_in_an_empty_folder(tmp_path: Pa
     assert (empty / "runs" / "spur_pair" / "summary.json").is_file()
     with zipfile.ZipFile(wheel) as archive:
         starters = {name for name in archive.namelist() if "/starters/" in name}
-    here = {str(path.relative_to(ROOT)) for path in (ROOT / "tol3d").glob("*/starters/*.yaml")}
+    here = {str(path.relative_to(ROOT)) for path in (ROOT / "tol3d").rglob("starters/*.yaml")}
     assert starters == here, "what `tol3d new` writes"

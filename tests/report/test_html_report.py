@@ -26,8 +26,8 @@ from tol3d.import_path import is_named
 from tol3d.notebook import write_report
 from tol3d.report.bars import Bars
 from tol3d.report.chart import Filled
-from tol3d.report.chart_figure import comparison_figure
 from tol3d.report.compare import comparison_report
+from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.displayed_run import DisplayedRun
 from tol3d.report.html import view_3d
 from tol3d.report.html.blocks import escaped, tag

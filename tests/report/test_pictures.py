@@ -24,11 +24,12 @@ from tol3d.report import picture
 from tol3d.report.bars import bars_of
 from tol3d.report.canvas import OUTSIDE, new_figure, save_figure
 from tol3d.report.chart import Chart
-from tol3d.report.chart_figure import comparison_figure, matrix_figure
+from tol3d.report.chart_figure import matrix_figure
 from tol3d.report.column import columns_of, is_bounded
+from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.drawn_chart import draw_panel
-from tol3d.report.figures import histogram_figure, overview_figure
 from tol3d.report.heading import heading, legible
+from tol3d.report.histogram import histogram_figure, overview_figure
 from tol3d.report.histogram_process import _refused
 from tol3d.report.measure_charts import curve as curve_chart
 from tol3d.report.measure_charts import histogram

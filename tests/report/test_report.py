@@ -44,8 +44,9 @@ from tol3d.report import (
 )
 from tol3d.report.bars import bars_of
 from tol3d.report.canvas import VERMILLION, new_figure
-from tol3d.report.chart_figure import charts_figure, comparison_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.compare import difference_of, measures_of
+from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.drawn_chart import draw_panel
 from tol3d.report.export import Exported, file_words
 from tol3d.report.measure_charts import curve, histogram

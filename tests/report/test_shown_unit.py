@@ -11,7 +11,7 @@ import pytest
 from tol3d import Run, run_scene
 from tol3d.assembly.summary_types import AssemblyMeasureSummary
 from tol3d.report.check import check_report
-from tol3d.report.figures import histogram_figure
+from tol3d.report.histogram import histogram_figure
 from tol3d.report.sheet import as_text
 from tol3d.report.shown_unit import BUILDS, LENGTHS, shown_run
 from tol3d.report.table import Detail, run_report

@@ -11,7 +11,7 @@ from oracles.two_sided import EccentricPair
 from places import SCENES
 
 from tol3d import Overrides, Run, run_scene
-from tol3d.report.chart_figure import comparison_figure
+from tol3d.report.comparison_picture import comparison_figure
 
 SEEN = 1e-5  # arcmin; the parabola through samples of 5 deg misses a peak by 4e-7 of it, steps end at 4e-6
 ARCMIN = 60 * 180 / math.pi

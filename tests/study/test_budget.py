@@ -20,8 +20,9 @@ from tol3d.study.runs.summary.run import Findings
 from tol3d.study.system.draw import Draw, Planar, Scalar
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.study.system.stated import component_slices, mean_deviations
 from tol3d.study.system.system import System
-from tol3d.study.system.trials import Trials, component_slices, mean_deviations
+from tol3d.study.system.trials import Trials
 from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.study.trials import budget
 from tol3d.study.trials.columns import columns_of

@@ -25,7 +25,7 @@ from tol3d.study.system.closed_form import ClosedForm, Share
 from tol3d.study.system.copula import INDEPENDENT, Block, Copula
 from tol3d.study.system.draw import Draw, Scalar
 from tol3d.study.system.measure import Measure
-from tol3d.study.system.trials import component_slices
+from tol3d.study.system.stated import component_slices
 from tol3d.study.trials.correlated import closed_form_of, value_correlations
 from tol3d.study.trials.draws import drawn, drawn_ones
 

@@ -21,7 +21,8 @@ from tol3d.gearing.methods.analytic import AnalyticMethod
 from tol3d.simulate import simulation_of
 from tol3d.study.results.agreement.differences import explanations
 from tol3d.study.results.agreement.explanation import Explanation, faults
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.stated import component_slices
+from tol3d.study.system.trials import Trials
 from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.study.trials.columns import columns_of
 from tol3d.study.trials.draws import drawn

@@ -21,7 +21,7 @@ from tol3d.study.results.task import materials_of, method_of
 from tol3d.study.system.draw import Planar, Scalar
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.plain import PlainMeasure, PlainSystem
-from tol3d.study.system.trials import mean_deviations
+from tol3d.study.system.stated import mean_deviations
 from tol3d.study.trials.evaluation import Evaluation
 from tol3d.study.trials.overrides import simulation_of
 from tol3d.study.trials.simulation import Simulation

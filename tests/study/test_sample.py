@@ -11,7 +11,7 @@ from tol3d.study.runs.summary.sample import Sample as SampleSummary
 from tol3d.study.runs.summary.values import as_json
 from tol3d.study.system.outcome import Outcome
 from tol3d.study.system.plain import PlainMeasure
-from tol3d.study.system.pooled import HalfSpan
+from tol3d.study.system.pooled_statistic import HalfSpan
 from tol3d.study.tallies.sample import Sample, sample_summary
 
 TRIALS = 100_000

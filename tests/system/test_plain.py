@@ -11,7 +11,7 @@ from tol3d.scene.entry import Reference
 from tol3d.study.system.draw import Planar
 from tol3d.study.system.mechanism import Mechanism
 from tol3d.study.system.plain import LengthSpec, PlainSystem, contributors_of, measures_of
-from tol3d.study.system.trials import nominal_build, stated
+from tol3d.study.system.stated import nominal_build, stated
 from tol3d.units import Dimension
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tol3d import InputError
-from tol3d.study.system.pooled import AT_ONCE, Spectrum
 from tol3d.study.system.positions import Positions
+from tol3d.study.system.spectrum import AT_ONCE, Spectrum
 
 TRIALS = 7
 ROUNDING = 1e-13  # of amplitudes near 1: some hundred sums of numbers with 1e-16

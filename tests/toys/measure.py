@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 from tol3d.study.system.measure import Worse
-from tol3d.study.system.pooled import PooledStatistic, Spectrum
+from tol3d.study.system.pooled_statistic import PooledStatistic
 from tol3d.study.system.positions import Positions, Take
+from tol3d.study.system.spectrum import Spectrum
 
 
 @dataclass(frozen=True)

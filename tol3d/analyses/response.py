@@ -36,7 +36,8 @@ from tol3d.study.system.other_laws import Following, Zoned, refuse_held, refuse_
 from tol3d.study.system.other_laws import scaled as scaled_draw
 from tol3d.study.system.other_laws import shifted as shifted_draw
 from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC, OK, status_column, value_column
-from tol3d.study.system.trials import Trials, component_count, component_slices, mean_deviations, stated
+from tol3d.study.system.stated import component_count, component_slices, mean_deviations, stated
+from tol3d.study.system.trials import Trials
 from tol3d.study.tallies.curve_tally import ENDS, HIGHEST, LOWEST
 from tol3d.study.trials.columns import drawn_columns
 from tol3d.study.trials.draws import KeptDraws, fill, kept_draws

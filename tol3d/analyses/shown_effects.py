@@ -1,18 +1,13 @@
-"""Effects as tables: for each measure the effect of every contributor, and the matrix of all as a file.
-
-The matrix of contributors and measures as a chart: shares of a measure's total change.
-"""
+"""Effects as tables: for each measure the effect of every contributor, and the matrix of all as a file."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Final
 
 from tol3d.analyses.tolerance_effects import ContributorEffects, Effects, Index, MeasureEffects
-from tol3d.report.chart import Chart, Charts
 from tol3d.report.declared import declared_table
 from tol3d.report.number import measured_text, share_text
 from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, title, titled
-from tol3d.report.share_charts import matrix
 from tol3d.study.runs.summary.shows import Computed, Shows, columns_of
 
 MOST_SHOWN: Final = 15
@@ -121,22 +116,3 @@ def whole_table(found: Effects) -> Table:
         for contributor, each in parts.items():
             rows.append((name, EffectRow(each, contributor, own.unit)))
     return declared_table("measure", rows)
-
-
-def effects_chart(found: Effects) -> Chart:
-    """Changes over the whole tolerance, as shares of their sum for each measure."""
-    changes = {
-        name: {contributor: each.change or 0.0 for contributor, each in own.contributors.items()}
-        for name, own in found.measures.items()
-    }
-    percents = {
-        name: {each: 100.0 * own / total if (total := sum(its.values())) > 0.0 else 0.0 for each, own in its.items()}
-        for name, its in changes.items()
-    }
-    title = f"{found.scene}   ·   change over the whole tolerance"
-    return matrix(percents, title, "in % of the sum of the changes by all contributors")
-
-
-def effects_charts(found: Effects) -> Charts:
-    """The matrix alone."""
-    return Charts([[effects_chart(found)]])

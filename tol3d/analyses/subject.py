@@ -61,13 +61,13 @@ KEPT: Final[Mapping[str, Kept]] = {
         "effects",
         "tol3d.analyses.tolerance_effects:Effects",
         "tol3d.analyses.shown_effects:effects_report",
-        "tol3d.analyses.shown_effects:effects_charts",
+        "tol3d.analyses.effects_charts:effects_charts",
     ),
     "rare": Kept(
         "rare events",
         "tol3d.analyses.rare_section:RareEvents",
         "tol3d.analyses.shown_rare_events:rare_report",
-        "tol3d.analyses.shown_rare_events:rare_charts",
+        "tol3d.analyses.rare_charts:rare_charts",
     ),
     "what-if": Kept(
         "what if",

@@ -76,6 +76,7 @@ class PosedSystem(AssemblySystem):
     @property
     @override
     def statuses(self) -> Statuses:  # type: ignore[override]
+        """See System."""
         return WITH_LOOPS if has_loops(self.assembly) else super().statuses
 
     @property

@@ -42,8 +42,8 @@ from tol3d.study.system.method import ANALYTIC_METHOD, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
 from tol3d.study.system.plain import PlainSystem
 from tol3d.study.system.regressors import is_group
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import Columns, KeyPath
-from tol3d.study.system.trials import component_slices
 
 T = TypeVar("T")
 Words = NDArray[np.str_]
@@ -93,6 +93,7 @@ class AssemblySystem(PlainSystem):
     @property
     @override
     def warnings(self) -> Sequence[str]:  # type: ignore[override]
+        """See System."""
         return self.idle
 
     @property

@@ -30,10 +30,11 @@ from tol3d.numerics.kept import kept
 from tol3d.scene import Scene
 from tol3d.study.system import contributor as system_contributor
 from tol3d.study.system import measure as system_measure
+from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
-from tol3d.study.system.pooled import Breakdown, PooledTerms
+from tol3d.study.system.pooled import PooledTerms
 from tol3d.study.system.positions import Positions
 from tol3d.study.system.system import Columns, KeyPath, Published, StreamKey, System
 from tol3d.study.system.trials import Trials

@@ -31,10 +31,10 @@ from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.study.results.task import materials_of, method_of
 from tol3d.study.runs.summary.values import made
+from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.method import Method
 from tol3d.study.system.outcome import METHODS, SEATED, Columns, status_column, value_column
-from tol3d.study.system.pooled import Breakdown
 from tol3d.study.system.system import System
 from tol3d.study.system.taken import ROWS_AT_ONCE
 from tol3d.study.system.trials import Trials

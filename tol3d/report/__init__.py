@@ -2,7 +2,7 @@
 
 A page (`page.py`) and a chart (`chart.py`) are data; `sheet.py`, `html/` and `drawn_chart.py` lay them out. Columns of
 tables are declared at the fields that they show (`declared.py`). What is a mechanism's own its presenter adds
-(`presenter.py`): no gear or assembly is known here. Names are loaded when they are first used: a table needs no
+(`presenter.py`): no mechanism is known here. Names are loaded when they are first used: a table needs no
 matplotlib, a picture no trimesh, and
 only what shows parts in 3D loads pyvista. Read `page.py` and `table.py` first.
 """
@@ -13,13 +13,10 @@ from tol3d.import_path import lazy_names
 
 if TYPE_CHECKING:
     from tol3d.report.canvas import save_figure
-    from tol3d.report.chart_figure import (
-        charts_figure,
-        draw_comparison,
-        save_charts,
-    )
+    from tol3d.report.chart_figure import charts_figure, save_charts
     from tol3d.report.check import check_report
     from tol3d.report.compare import comparison_report
+    from tol3d.report.comparison_picture import draw_comparison
     from tol3d.report.declared import (
         declared_table,
         side_by_side,
@@ -28,7 +25,7 @@ if TYPE_CHECKING:
         export_run,
         part_meshes,
     )
-    from tol3d.report.figures import draw_histogram
+    from tol3d.report.histogram import draw_histogram
     from tol3d.report.html.blocks import page_html
     from tol3d.report.html.document import report_html
     from tol3d.report.measure_charts import spanned
@@ -52,8 +49,8 @@ _HOMES = {
     "check_report": "tol3d.report.check",
     "comparison_report": "tol3d.report.compare",
     "declared_table": "tol3d.report.declared",
-    "draw_comparison": "tol3d.report.chart_figure",
-    "draw_histogram": "tol3d.report.figures",
+    "draw_comparison": "tol3d.report.comparison_picture",
+    "draw_histogram": "tol3d.report.histogram",
     "export_run": "tol3d.report.export",
     "given_text": "tol3d.report.number",
     "page_html": "tol3d.report.html.blocks",

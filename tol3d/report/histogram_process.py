@@ -24,7 +24,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Final
 
-from tol3d.report.figures import draw_heat_map, draw_histogram, draw_measure
+from tol3d.report.histogram import draw_heat_map, draw_histogram, draw_measure
 from tol3d.report.picture import HEAT_MAP, Pictures, measure_files, named_files
 from tol3d.report.presenter import Draw, presenter_of
 from tol3d.report.share_charts import of_scalars

@@ -35,7 +35,7 @@ class TemperatureSpec(ToleranceSpec):
     """A temperature difference from 20 degC, the same throughout the parts; each grows by its own coefficient.
 
     Positive is warmer. Sizes and the places of features grow about the origin of their part, which is the fixed point
-    of a fixed part. Spur gears, internal gears, housings and parts with features grow; other parts do not.
+    of a fixed part. Parts of kinds with an expansion grow; other parts do not.
     """
 
     shared: ClassVar[bool] = True

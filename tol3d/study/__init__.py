@@ -8,7 +8,7 @@
     tallies     statistics, folded block by block
     results     tasks of workers, attribution, agreement of the methods, the summary
 
-From low to high: none knows those below it in this list, and none knows a gear, a part or a solid. Read
+From low to high: none knows those below it in this list, and none knows a mechanism, a part or a solid. Read
 `system/system.py` first, then `results/task.py`.
 """
 

@@ -13,7 +13,7 @@ from tol3d.assembly.model.statuses import OVERLAP
 from tol3d.assembly.system import AssemblySystem
 from tol3d.assembly.witness import FclWitness
 from tol3d.simulate import load, simulation_of
-from tol3d.study.system.trials import stated
+from tol3d.study.system.stated import stated
 from tol3d.study.trials.draws import drawn
 
 ROUND = """

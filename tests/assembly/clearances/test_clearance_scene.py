@@ -15,7 +15,7 @@ from tol3d.assembly.model.statuses import OK, OVERLAP
 from tol3d.assembly.system import AssemblySystem, ClearanceSystem
 from tol3d.errors import InputError, SceneError
 from tol3d.simulate import Overrides, load, simulation_of
-from tol3d.study.system.trials import stated
+from tol3d.study.system.stated import stated
 from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]

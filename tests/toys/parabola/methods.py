@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Answers
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import System
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.trials import Trials
 from toys.parabola.springs import LOST_LEVER, Room, Springs, coil_weights, own_measure
 
 Array = NDArray[np.float64]

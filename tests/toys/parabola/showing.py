@@ -18,7 +18,7 @@ from tol3d.simulate import Replay, replay, replayed, simulation_again
 from tol3d.study.runs.summary.measure import MeasureSummary
 from tol3d.study.runs.summary.shows import Shows
 from tol3d.study.runs.worst import worst_trial
-from tol3d.study.system.trials import mean_build, nominal_build
+from tol3d.study.system.stated import mean_build, nominal_build
 from toys.parabola.bar import Bar
 from toys.parabola.springs import Springs
 from toys.parabola.summary import TermsOfRun

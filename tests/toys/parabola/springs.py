@@ -12,8 +12,8 @@ from tol3d.files import Files
 from tol3d.scene import Scene
 from tol3d.scene.bases import ToleranceSpec
 from tol3d.study.system.draw import Draw, Each, Scalar
-from tol3d.study.system.pooled import Spectrum
 from tol3d.study.system.positions import AT_RANDOM, Positions
+from tol3d.study.system.spectrum import Spectrum
 from toys.contributor import ToyContributor
 from toys.measure import ToyMeasure
 from toys.parabola.grammar import HeightSpec, LiftMeasureSpec, LiftSpec, RippleSpec, RoomSpec, SpringOptions, SpringSpec

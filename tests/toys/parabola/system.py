@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.scene import Scene
+from tol3d.study.system.breakdown import Breakdown, SumTerm
 from tol3d.study.system.closed_form import ClosedForm, Share
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Method, MethodKind
 from tol3d.study.system.outcome import Statuses
-from tol3d.study.system.pooled import Breakdown, PooledTerms, SumTerm
+from tol3d.study.system.pooled import PooledTerms
 from tol3d.study.system.positions import Positions
 from tol3d.study.system.regressors import regress_plainly, regress_term
 from tol3d.study.system.system import KeyPath, Published, StreamKey

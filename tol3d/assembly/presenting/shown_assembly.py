@@ -20,7 +20,7 @@ from tol3d.report.presenter import View, Which
 from tol3d.study.results.replaying import Replay, replay, replayed, simulation_again
 from tol3d.study.runs.run import Run
 from tol3d.study.runs.worst import worst_trial
-from tol3d.study.system.trials import magnified, mean_build, nominal_build
+from tol3d.study.system.stated import magnified, mean_build, nominal_build
 
 COLOURS: Final = ("#4682B4", "#CD853F", "#6B8E23", "#B22222", "#8470FF", "#2F8F8F", "#C71585", "#708090")
 THIN: Final = 1 / 120

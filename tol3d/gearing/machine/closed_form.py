@@ -25,7 +25,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.study.system.closed_form import ClosedForm, Share
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.dependent import reads_of
-from tol3d.study.system.trials import component_slices
+from tol3d.study.system.stated import component_slices
 
 LEVEL: Final = 1e-12
 """Difference of the displacements of both ends of an axis per mm, rad or K that is rounding."""

@@ -45,7 +45,7 @@ from tol3d.statistics.distributions.constant import Constant
 from tol3d.study.system.draw import Planar
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.plain import stated_of
-from tol3d.study.system.trials import component_slices
+from tol3d.study.system.stated import component_slices
 
 KIND = "shaft_in_bores"
 

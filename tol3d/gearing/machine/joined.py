@@ -24,7 +24,8 @@ from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import KnownRows, kept
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.measure import Measure
-from tol3d.study.system.trials import Trials, component_slices, mean_deviations, stated
+from tol3d.study.system.stated import component_slices, mean_deviations, stated
+from tol3d.study.system.trials import Trials
 
 Bools = NDArray[np.bool_]
 

@@ -29,7 +29,8 @@ from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Answers, Codes, Method
 from tol3d.study.system.outcome import reason_column
 from tol3d.study.system.plain import PlainMeasure
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.stated import component_slices
+from tol3d.study.system.trials import Trials
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,8 +17,8 @@ from tol3d.gearing.system import GearSystem
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.regressors import is_group, regress_plainly, regress_term
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import Columns
-from tol3d.study.system.trials import component_slices
 
 
 def with_displacements(system: Joined, measure: Measure, columns: Columns) -> Columns:

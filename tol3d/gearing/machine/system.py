@@ -22,15 +22,17 @@ from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.gearing.system import EXACT, METHODS, GearSystem
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import kept
+from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
-from tol3d.study.system.pooled import Breakdown, PooledTerms
+from tol3d.study.system.pooled import PooledTerms
 from tol3d.study.system.positions import Positions
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import Columns, KeyPath, Published, StreamKey
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.trials import Trials
 
 
 def _joined(every: Sequence[Mapping[str, Array]]) -> Sequence[str]:

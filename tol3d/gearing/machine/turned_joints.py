@@ -16,7 +16,8 @@ from tol3d.gearing.play.linked import DEAR
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import kept, row_keys
 from tol3d.study.system.method import Method
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.stated import component_slices
+from tol3d.study.system.trials import Trials
 
 
 @dataclass(frozen=True, eq=False)

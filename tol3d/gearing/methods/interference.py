@@ -7,8 +7,9 @@ from tol3d.gearing.methods.analytic import analytic_backlashes, analytic_play
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model
 from tol3d.gearing.model.measure import ParallelStage
 from tol3d.gearing.play.linked import link_trials
+from tol3d.study.system.stated import mean_build, nominal_build
 from tol3d.study.system.system import KeyPath
-from tol3d.study.system.trials import Trials, mean_build, nominal_build
+from tol3d.study.system.trials import Trials
 
 Problem = tuple[KeyPath, str]
 

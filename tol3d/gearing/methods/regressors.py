@@ -18,8 +18,9 @@ from tol3d.gearing.play.linked import link_contributors
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import row_keys
 from tol3d.study.system.regressors import is_group, regress_plainly, regress_term
+from tol3d.study.system.stated import mean_deviations, stated
 from tol3d.study.system.taken import ROWS_AT_ONCE, taken
-from tol3d.study.system.trials import Trials, mean_deviations, stated
+from tol3d.study.system.trials import Trials
 
 Columns = Mapping[str, NDArray[Any]]
 

@@ -6,8 +6,9 @@ from typing import ClassVar, Literal
 
 from tol3d.study.system import measure as system_measure
 from tol3d.study.system.measure import Worse
-from tol3d.study.system.pooled import PooledStatistic, Spectrum
+from tol3d.study.system.pooled_statistic import PooledStatistic
 from tol3d.study.system.positions import Positions, Take
+from tol3d.study.system.spectrum import Spectrum
 from tol3d.units import ARCMIN
 
 BacklashQuantity = Literal["normal_backlash", "circumferential_backlash", "angular_backlash", "rest_angle"]

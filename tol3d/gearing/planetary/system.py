@@ -25,9 +25,10 @@ from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import ANALYTIC_METHOD, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
 from tol3d.study.system.pooled import PooledTerms
+from tol3d.study.system.stated import mean_build
 from tol3d.study.system.system import Columns, KeyPath, Published
 from tol3d.study.system.taken import weights_taken
-from tol3d.study.system.trials import Trials, mean_build
+from tol3d.study.system.trials import Trials
 
 FCL: Final = "fcl"
 WITNESS: Final = "tol3d.gearing.planetary.witness"  # it loads FCL, in the worker

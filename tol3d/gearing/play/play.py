@@ -21,7 +21,7 @@ from tol3d.gearing.model import Backlash, LostMotion, Measure, Mesh, Model, Read
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
 from tol3d.gearing.play.linked import LinkLaw, link_trials
 from tol3d.numerics.arrays import Array
-from tol3d.study.system.pooled import Breakdown, SumTerm
+from tol3d.study.system.breakdown import Breakdown, SumTerm
 from tol3d.study.system.trials import Trials
 from tol3d.units import ARCMIN
 

@@ -16,10 +16,12 @@ from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import ANALYTIC_METHOD, Answers
 from tol3d.study.system.output_system import OutputSystem, Parts
 from tol3d.study.system.plain import PlainMeasure, one_position, stated_of
-from tol3d.study.system.pooled import HalfSpan, Spectrum
+from tol3d.study.system.pooled_statistic import HalfSpan
 from tol3d.study.system.positions import Positions, Take
+from tol3d.study.system.spectrum import Spectrum
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import Columns
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.trials import Trials
 
 Reading = Literal["lost motion", "low stiffness", "drive", "back"]
 

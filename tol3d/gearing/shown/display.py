@@ -20,7 +20,7 @@ from tol3d.report.presenter import Which
 from tol3d.study.results.replaying import Replay, replay, replayed, simulation_again
 from tol3d.study.runs.run import Run
 from tol3d.study.runs.worst import worst_trial
-from tol3d.study.system.trials import magnified, mean_build, nominal_build
+from tol3d.study.system.stated import magnified, mean_build, nominal_build
 
 Side = Literal["drive", "back"]
 """Flanks on which meshes rest: those that the first shaft pushes with, or the others."""

@@ -17,7 +17,7 @@ from tol3d.gearing.stack_up import reference_form
 from tol3d.numerics.arrays import Array
 from tol3d.report.number import NOTHING, UNIT_SIGNS
 from tol3d.study.system.closed_form import Share
-from tol3d.study.system.trials import mean_deviations, stated
+from tol3d.study.system.stated import mean_deviations, stated
 
 # mm, rad, K; separates the two sides of a kink (1 um of a gap by the end of a face) and bends nothing (1e-5 of a slope)
 STEP_ASIDE: dict[Unit, float] = {"um": 1e-4, "mrad": 1e-5, "arcmin": 1e-5, "K": 0.1}

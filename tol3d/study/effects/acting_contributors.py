@@ -23,8 +23,9 @@ from tol3d.study.effects.regions import Drawing, Rows, Space, furthest, gradient
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.draw import component_sigmas
 from tol3d.study.system.measure import Measure
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import System
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.budget import PLACING, price
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.evaluation import Evaluation, measures_alike

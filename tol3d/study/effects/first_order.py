@@ -18,8 +18,8 @@ from tol3d.study.system.dependent import reads_of
 from tol3d.study.system.draw import JointDraw, drawn_each
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Method
+from tol3d.study.system.stated import component_slices, mean_deviations
 from tol3d.study.system.system import Described, System
-from tol3d.study.system.trials import component_slices, mean_deviations
 from tol3d.study.trials.correlated import divided_variances
 from tol3d.study.trials.evaluation import Values, batches, evaluations, of_alike
 from tol3d.study.trials.simulation import Simulation

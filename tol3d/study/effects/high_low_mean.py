@@ -22,8 +22,8 @@ import numpy as np
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.dependent import Named
 from tol3d.study.system.measure import Measure
+from tol3d.study.system.stated import component_slices, mean_deviations
 from tol3d.study.system.system import System
-from tol3d.study.system.trials import component_slices, mean_deviations
 from tol3d.study.trials.budget import ALONE, PLACING
 from tol3d.study.trials.evaluation import Values, batches, measures_alike
 

@@ -18,8 +18,8 @@ from tol3d.study.system.dependent import Dependent, Given, in_draw_order, reads_
 from tol3d.study.system.draw import Draw, component_sigmas
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.region import Filled, Region, region_of
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import System
-from tol3d.study.system.trials import component_slices
 
 Codes = NDArray[np.int8]
 Standing = Mapping[str, Array]

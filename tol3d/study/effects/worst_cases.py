@@ -16,7 +16,8 @@ from tol3d.study.effects.worst_case import WorstCase, builds_a_row, first_starts
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import ANALYTIC_METHOD, Method
 from tol3d.study.system.outcome import ANALYTIC, OK
-from tol3d.study.system.trials import Trials, stated
+from tol3d.study.system.stated import stated
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.budget import PLACING
 from tol3d.study.trials.evaluation import Evaluation, evaluations
 from tol3d.study.trials.simulation import Simulation

@@ -26,7 +26,8 @@ from tol3d.study.effects.regressors import regressor_groups
 from tol3d.study.runs.summary.measure import SharesBy
 from tol3d.study.system.dependent import reads_of
 from tol3d.study.system.measure import Measure
-from tol3d.study.system.trials import Trials, component_slices, joined
+from tol3d.study.system.stated import component_slices
+from tol3d.study.system.trials import Trials, joined
 from tol3d.study.tallies.regression import Sums
 from tol3d.study.tallies.sample import finite
 from tol3d.study.trials.budget import FREE, of_other_method, price

@@ -29,7 +29,7 @@ from tol3d.study.system.faults import Origin
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Method
 from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC
-from tol3d.study.system.trials import mean_deviations, stated
+from tol3d.study.system.stated import mean_deviations, stated
 from tol3d.study.tallies.curve_tally import CurveTally, spectrum_sample
 from tol3d.study.tallies.histograms import histograms
 from tol3d.study.tallies.joint import joint_summary

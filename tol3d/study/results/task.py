@@ -20,7 +20,7 @@ from tol3d.study.execution.pools import Concurrency, suggested_workers
 from tol3d.study.results.versions import Versions, installed_versions, refuse_other_versions
 from tol3d.study.system.faults import faults_of
 from tol3d.study.system.method import Method
-from tol3d.study.system.trials import component_count
+from tol3d.study.system.stated import component_count
 from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.study.trials.columns import columns_of
 from tol3d.study.trials.draws import drawn

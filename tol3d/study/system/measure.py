@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from typing import Literal, Protocol, runtime_checkable
 
-from tol3d.study.system.pooled import PooledStatistic, Spectrum
+from tol3d.study.system.pooled_statistic import PooledStatistic
 from tol3d.study.system.positions import Positions, Take
 from tol3d.study.system.remembered import Remembered
+from tol3d.study.system.spectrum import Spectrum
 
 Worse = Literal["low", "high"]
 

@@ -14,9 +14,10 @@ from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.plain import PlainSystem
 from tol3d.study.system.positions import Positions
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import Columns, StreamKey
 from tol3d.study.system.taken import ROWS_AT_ONCE
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.trials import Trials
 
 Parts = Callable[[Contributor, Array], Array]
 """Effect of a contributor off its mean (trials, components) on a measure (trials,), in mm or rad."""
@@ -37,6 +38,7 @@ class OutputSystem(PlainSystem):
     @property
     @override
     def warnings(self) -> tuple[str, ...]:  # type: ignore[override]
+        """See System."""
         return self.implausible
 
     @property

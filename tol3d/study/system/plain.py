@@ -18,6 +18,7 @@ from tol3d.scene import Scene
 from tol3d.scene.bases import LengthLimit, MeasureEntry, MeasureSpec, ToleranceSpec
 from tol3d.scene.direction import At
 from tol3d.statistics.distributions import DeviationLaw, Distribution
+from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.contributor import Contributor, column_names
 from tol3d.study.system.draw import Draw, Scalar
@@ -25,11 +26,14 @@ from tol3d.study.system.faults import UnfitError
 from tol3d.study.system.measure import Measure, Worse
 from tol3d.study.system.method import ANALYTIC_METHOD, Answers, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
-from tol3d.study.system.pooled import Breakdown, PooledStatistic, PooledTerms, Spectrum
+from tol3d.study.system.pooled import PooledTerms
+from tol3d.study.system.pooled_statistic import PooledStatistic
 from tol3d.study.system.positions import AT_RANDOM, Positions, Take
 from tol3d.study.system.regressors import is_group, regress_plainly, regress_term
+from tol3d.study.system.spectrum import Spectrum
+from tol3d.study.system.stated import component_slices, mean_deviations, stated
 from tol3d.study.system.system import Columns, KeyPath, Published, StreamKey
-from tol3d.study.system.trials import Trials, component_slices, mean_deviations, stated
+from tol3d.study.system.trials import Trials
 from tol3d.units import Dimension
 
 Drawn = Callable[[Distribution, Any], Draw]

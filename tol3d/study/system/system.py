@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
 from tol3d.scene.published import PublishedColumn
+from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Method, MethodKind
 from tol3d.study.system.outcome import Statuses
-from tol3d.study.system.pooled import Breakdown, PooledTerms
+from tol3d.study.system.pooled import PooledTerms
 from tol3d.study.system.positions import Positions
 from tol3d.study.system.trials import Trials
 

@@ -24,7 +24,7 @@ from tol3d.study.system.outcome import (
     status_column,
     value_column,
 )
-from tol3d.study.system.pooled import Spectrum
+from tol3d.study.system.spectrum import Spectrum
 from tol3d.study.tallies.performance import Judged, Performance, Side
 from tol3d.study.tallies.replicated import Rows, interval_of_replicates, limits_by_replicate, merged_by_replicate
 from tol3d.study.tallies.sample import QUANTILES, Sample, finite, in_unit, lacking_of, quantile

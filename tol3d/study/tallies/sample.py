@@ -13,7 +13,7 @@ from tol3d.study.runs.summary import sample as summary
 from tol3d.study.runs.summary.values import made
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.outcome import Mask, Outcome
-from tol3d.study.system.pooled import Pool
+from tol3d.study.system.pooled_statistic import Pool
 from tol3d.study.tallies.performance import OUTER, Judged, Side
 from tol3d.study.tallies.replicated import Replicated, students_half
 from tol3d.study.trials.study import PpkBy

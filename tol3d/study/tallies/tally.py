@@ -14,6 +14,7 @@ from tol3d.statistics.estimates import Agreement, CountGrid, Grid
 from tol3d.statistics.estimates.grid import BINS
 from tol3d.statistics.estimates.lazy import quick_products
 from tol3d.statistics.estimates.variance_shares import Products, plain_products
+from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.dependent import DependentlyJudged
 from tol3d.study.system.draw import Each, JudgedDraw
@@ -28,7 +29,7 @@ from tol3d.study.system.outcome import (
     outcome_of,
     value_column,
 )
-from tol3d.study.system.pooled import Breakdown, PooledTerms
+from tol3d.study.system.pooled import PooledTerms
 from tol3d.study.system.system import Described, System
 from tol3d.study.tallies.curve_tally import BINS as ORDER_BINS
 from tol3d.study.tallies.curve_tally import (

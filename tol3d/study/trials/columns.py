@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Answers, Codes, Method
 from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC, OK, Statuses, status_column, value_column
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import Described, System
-from tol3d.study.system.trials import Trials, component_slices
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.evaluation import Asked, evaluations
 
 Columns = dict[str, NDArray[Any]]

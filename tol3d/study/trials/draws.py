@@ -19,8 +19,9 @@ from tol3d.statistics.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol
 from tol3d.statistics.samplers.lazy import quick_monte_carlo
 from tol3d.study.system.dependent import Dependent, DrawnAs, in_draw_order
 from tol3d.study.system.draw import Draw
+from tol3d.study.system.stated import component_count, component_slices
 from tol3d.study.system.system import StreamKey, System
-from tol3d.study.system.trials import Trials, component_count, component_slices
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.simulation import Simulation
 
 EPSILON: Final = 2.0**-53

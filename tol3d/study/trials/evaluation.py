@@ -17,9 +17,10 @@ from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import ANALYTIC_METHOD, Answers, Method
 from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC, OK
 from tol3d.study.system.positions import Positions
+from tol3d.study.system.stated import stated
 from tol3d.study.system.system import System
 from tol3d.study.system.taken import taken, trials_at_once
-from tol3d.study.system.trials import Trials, stated
+from tol3d.study.system.trials import Trials
 
 T = TypeVar("T")
 BATCH: Final = 2**22

@@ -23,7 +23,7 @@ from tol3d.report.polar_map import polar_map
 from tol3d.scene.nearest import hint
 from tol3d.study.runs.csv_text import csv_text
 from tol3d.study.system.method import ANALYTIC_METHOD
-from tol3d.study.system.trials import component_slices, stated
+from tol3d.study.system.stated import component_slices, stated
 from tol3d.study.trials.simulation import Simulation
 from tol3d.units import Quantity
 

@@ -19,7 +19,7 @@ from tol3d.report.motion import Motion
 from tol3d.report.presenter import View, Which
 from tol3d.study.results.replaying import Replay
 from tol3d.study.runs.run import Run
-from tol3d.study.system.trials import magnified
+from tol3d.study.system.stated import magnified
 
 COLOURS: Final = ("#9AA7B4", "#BFA58E", "#9DB5A6", "#B4A5BE")
 """Colours of housings and other parts: greyer than those of shafts and their gears."""

@@ -20,8 +20,8 @@ from tol3d.study.results.agreement.method_fits import MethodFits
 from tol3d.study.results.agreement.second_look import BEND_POSITIONS, STEPS, bends, scalars_of, second_look
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Method
+from tol3d.study.system.stated import component_count, component_slices, mean_deviations
 from tol3d.study.system.system import System
-from tol3d.study.system.trials import component_count, component_slices, mean_deviations
 from tol3d.study.tallies.tally import Tally
 from tol3d.study.trials.budget import ALONE, Use, price
 from tol3d.study.trials.evaluation import Evaluation, measures_alike

@@ -20,8 +20,9 @@ from tol3d.study.results.agreement.second_look import SecondLook, largest_bends
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.regressors import has_square
+from tol3d.study.system.stated import component_slices, mean_deviations
 from tol3d.study.system.system import System
-from tol3d.study.system.trials import Trials, component_slices, mean_deviations
+from tol3d.study.system.trials import Trials
 from tol3d.units import FACTORS, RESOLVED
 
 SURE = 5.0  # standard errors; by chance once in two million

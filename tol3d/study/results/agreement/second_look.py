@@ -22,8 +22,9 @@ from tol3d.study.system.draw import component_sigmas
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Method
 from tol3d.study.system.positions import AT_RANDOM
+from tol3d.study.system.stated import component_slices, mean_deviations
 from tol3d.study.system.system import Described, System
-from tol3d.study.system.trials import Trials, component_slices, joined, mean_deviations
+from tol3d.study.system.trials import Trials, joined
 from tol3d.study.tallies.regression import Sums
 from tol3d.study.trials.columns import drawn_columns
 from tol3d.study.trials.draws import drawn, drawn_ones
