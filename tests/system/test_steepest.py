@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tol3d.assembly.zones.catalogue import axis
 from tol3d.statistics.distributions.uniform import Uniform
 from tol3d.study.system.draw import Each
 from tol3d.study.system.steepest import along, steepest_ends
@@ -75,3 +76,18 @@ def test_of_several_features_that_act_alike_to_both_sides_each_is_looked_at(nois
     np.testing.assert_allclose(ends.sum(axis=0), 0.0, atol=1e-14)
     together = draw.ends(lambda rows: rows @ factors + rows @ rounding, turning=False)
     np.testing.assert_allclose(together[0], 2.0 * factors / np.linalg.norm(factors), atol=1e-9)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-12, -1e-12])
+def test_each_component_of_an_axis_is_looked_at_by_itself(noise: float) -> None:
+    """A zone of diameter 4, each of whose coordinates grows by its own factor to both sides."""
+    factors, rounding = np.array([1.0, 3.0, 0.5, 2.0]), noise * np.array([1.0, -2.0, 3.0, -1.0])
+    ends = steepest_ends(
+        lambda rows: np.abs(rows) @ factors + rows @ rounding, np.zeros(4), np.full(4, RADIUS), axis(4.0).furthest
+    )
+    grown = np.abs(ends) @ factors
+    assert sorted(grown.tolist()) == pytest.approx([1.0, 1.0, 2.0, 2.0, 4.0, 4.0, 6.0, 6.0])
+
+
+def test_an_end_of_an_axis_that_does_not_matter_follows_the_other_only_as_far_as_it_must() -> None:
+    np.testing.assert_allclose(axis(4.0, 1.6).furthest(np.array([0.0, 0.0, 1.0, 0.0])), [0.4, 0.0, 2.0, 0.0])

@@ -45,12 +45,12 @@ class Ends(Domain):
         return NormalEnds()
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
-        """See Domain: the best of the few points at which a linear function may have its maximum."""
+        """See Domain: the best, of equals the first, of the few points at which a linear function may be largest."""
         start, end = complex(*gradient[:2]), complex(*gradient[2:])
         ratio = orientation_half / half
         edge = _unit(start + end)
         found = [
-            (_unit(start), _unit(end)),
+            (_facing(start, end, ratio), _facing(end, start, ratio)),
             (edge + 2.0 * ratio * _unit(start), edge),
             (edge, edge + 2.0 * ratio * _unit(end)),
             (ratio * _unit(start), -ratio * _unit(start)),  # of a couple
@@ -60,7 +60,9 @@ class Ends(Domain):
             along = _unit(start * turn + end * turn.conjugate())
             found.append((along * turn.conjugate(), along * turn))
         points = [np.array([s.real, s.imag, e.real, e.imag]) for s, e in found if _is_allowed(s, e, ratio)]
-        return half * max(points, key=lambda point: float(point @ gradient))
+        reached = np.array([float(point @ gradient) for point in points])
+        furthest = float(reached.max())
+        return half * points[int(np.argmax(reached >= furthest - ROUNDING * abs(furthest)))]
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
         start, end = coordinates[:, :2], coordinates[:, 2:]
@@ -175,6 +177,11 @@ def _uniform_covariance(ratio: float) -> Array:
 
 def _unit(value: complex) -> complex:
     return value / abs(value) if value else 1.0 + 0.0j
+
+
+def _facing(own: complex, other: complex, ratio: float) -> complex:
+    """Where an end with this gradient goes by itself; one without gradient no further than the other takes it."""
+    return _unit(own) if own or not other else max(0.0, 1.0 - 2.0 * ratio) * _unit(other)
 
 
 def _is_allowed(start: complex, end: complex, ratio: float) -> bool:

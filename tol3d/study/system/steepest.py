@@ -39,7 +39,7 @@ def steepest_ends(values: Values, mean: Array, steps: Array, furthest: Callable[
         return np.full((2, len(steps)), np.nan)
     odd, even = np.abs(above - below).sum() / 2.0, np.abs(alike).sum()
     if even > (1.0 + TIE) * odd:
-        most = int(np.argmax(np.abs(alike) >= (1.0 - TIE) * np.abs(alike).max()))
+        most = _largest(alike)
         place = mean + (
             both[most] if slopes[most] * steps[most] * alike[most] >= -TIE * alike[most] ** 2 else -both[most]
         )
@@ -48,9 +48,21 @@ def steepest_ends(values: Values, mean: Array, steps: Array, furthest: Callable[
         slopes = there if np.isfinite(there).all() else slopes
     ways = [slopes]
     if even > CURVED * odd:
-        across, _ = np.linalg.qr(np.column_stack([slopes * steps, np.diag(steps)]))
-        ways += [*(across.T[1:] / steps)]
+        others = np.delete(np.diag(steps), _largest(slopes * steps), axis=1)
+        across, _ = np.linalg.qr(np.column_stack([slopes * steps, others]))
+        ways = [_without_rounding(way, steps) for way in (slopes, *(across.T[1:] / steps))]
     return np.array([furthest(sign * way) for way in ways for sign in (1.0, -1.0)])
+
+
+def _largest(changes: Array) -> int:
+    """The component of the largest change; of those that are as large but for rounding the first."""
+    return int(np.argmax(np.abs(changes) >= (1.0 - TIE) * np.abs(changes).max()))
+
+
+def _without_rounding(way: Array, steps: Array) -> Array:
+    """Slopes (components,) of which those that are rounding beside the largest are none."""
+    changes = np.abs(way * steps)
+    return np.where(changes < TIE * changes.max(), 0.0, way)
 
 
 def along(radius: float, slopes: Array) -> Array:
