@@ -7,16 +7,18 @@ from typing import Any, Final
 from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import BearingSpec, BoredGearSpec, GearSpec, ShaftSpec, carried, gears_on
 from tol3d.gearing.grammar.tolerances.axes import (
-    AxesOffsetSpec,
     AxisInPlaneSpec,
     AxisOutOfPlaneSpec,
     CentreDistanceSpec,
     ShaftAngleSpec,
 )
-from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.gearing.grammar.tolerances.flank_shape import ProfileFormSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import ReducerBacklashSpec
-from tol3d.gearing.grammar.tolerances.gears import AxialShiftSpec, EccentricitySpec, RunOutSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
+    GearToleranceSpec,
+    MeshToleranceSpec,
+    ReducerBacklashSpec,
+)
+from tol3d.gearing.grammar.tolerances.gears import AxialShiftSpec
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, another_size, larger_end
 from tol3d.scene.place import KeyPath
@@ -55,9 +57,7 @@ def forms_of_two_shapes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 def implausible_displacements(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Axes that lie off their places by more than half of a module, as teeth are two modules deep."""
     for name, spec in scene.distributed.items():
-        if not isinstance(
-            spec, EccentricitySpec | RunOutSpec | BearingClearanceSpec | CentreDistanceSpec | AxesOffsetSpec
-        ):
+        if not (isinstance(spec, GearToleranceSpec | MeshToleranceSpec) and spec.displaces):
             continue
         gears = {gear: part for gear in _displaced(scene, spec.of) if isinstance(part := scene.parts[gear], GearSpec)}
         if not gears:

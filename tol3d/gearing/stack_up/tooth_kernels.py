@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import QUICK, kernel, part
-from tol3d.numerics.quick_waves import cos_and_sin
+from tol3d.numerics.quick_angles import cos_and_sin
 
 Integers = NDArray[np.int64]
 

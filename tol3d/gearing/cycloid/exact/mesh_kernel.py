@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from tol3d.numerics.compiled import kernel
-from tol3d.numerics.small_angles import azimuth, turned_by
+from tol3d.numerics.quick_angles import azimuth, turned_by
 
 ROUNDS: Final = 2
 """Iterations of a planet's turn; each multiplies the error by its eccentricity over its base radius."""

@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from tol3d.numerics.compiled import part
-from tol3d.numerics.small_angles import turned_by
+from tol3d.numerics.quick_angles import turned_by
 
 MOST_STEPS: Final = 30  # three are needed where errors are some 20 um
 TURN_XTOL: Final = 1e-11  # rad; the next step is a thousandth of it

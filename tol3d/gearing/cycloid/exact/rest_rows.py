@@ -7,7 +7,7 @@ import numpy as np
 from tol3d.gearing.cycloid.exact.pin_contact import FOOT_XTOL, TURN, lobe_at, lobe_turn, placed
 from tol3d.numerics.compiled import nested
 from tol3d.numerics.loops import fill
-from tol3d.numerics.small_angles import turned_by
+from tol3d.numerics.quick_angles import turned_by
 
 ARM: Final = 100.0  # mm; turns count as lengths there, so that all rows are of one size
 ROOM: Final = 1.0  # mm, on either side of where it would be nominally

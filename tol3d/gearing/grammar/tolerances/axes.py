@@ -15,6 +15,8 @@ from tol3d.units import Dimension
 class CentreDistanceSpec(MeshToleranceSpec):
     """f_a, a length: added to the centre distance; positive opens, but closes a pair with an internal gear."""
 
+    displaces: ClassVar[bool] = True
+
     kind: Literal["centre_distance"]
 
     def meaning(self, nominal: Nominal) -> Meaning:
@@ -63,6 +65,7 @@ class AxisOutOfPlaneSpec(MeshToleranceSpec):
 class AxesOffsetSpec(MeshToleranceSpec):
     """f_a, a length: the axes pass each other by it; the driven one lies at +y of the mesh's world."""
 
+    displaces: ClassVar[bool] = True
     applies_to: ClassVar[tuple[type[Entry], ...]] = (BevelMeshSpec,)
 
     kind: Literal["axes_offset"]

@@ -85,6 +85,7 @@ class BearingClearanceSpec(GearToleranceSpec):
     anywhere. Of a bearing, the first two are those of the gear on its shaft that the mesh is of.
     """
 
+    displaces: ClassVar[bool] = True
     applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec, BearingSpec)
 
     kind: Literal["bearing_clearance"]

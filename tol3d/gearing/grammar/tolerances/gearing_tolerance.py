@@ -87,6 +87,9 @@ def by_scale(stated: Distribution, scale: Scale | None) -> Distribution:
 class GearingToleranceSpec(ToleranceSpec):
     """A tolerance of gears, of their shafts and bearings, or of their relative position."""
 
+    displaces: ClassVar[bool] = False
+    """It takes an axis off its place, as no scene means by more than half of a module."""
+
     @abstractmethod
     def meaning(self, nominal: Any) -> Meaning:
         """Meaning of a deviation in a scene with known Nominal geometry."""

@@ -82,6 +82,8 @@ class ClockingSpec(GearToleranceSpec):
 class TeethOffAxisSpec(GearToleranceSpec):
     """Teeth whose centre lies off the rotation axis and turns with the gear."""
 
+    displaces: ClassVar[bool] = True
+
     direction: RandomOrFixed = Field(
         default="random", description="phi, in the gear's frame (x through the middle of tooth 0)"
     )
@@ -100,6 +102,7 @@ class EccentricitySpec(TeethOffAxisSpec):
 class RunOutSpec(GearToleranceSpec):
     """S, a length: the shaft displaces the gears that it carries by S (cos phi, sin phi) and turns with them."""
 
+    displaces: ClassVar[bool] = True
     applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec, ShaftSpec)
 
     kind: Literal["run_out"]

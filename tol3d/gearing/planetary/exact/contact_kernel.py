@@ -23,7 +23,7 @@ import numpy as np
 from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import copy, eliminated, fill, fill_matrix
 from tol3d.numerics.programme import OK, STALLED, new_rooms, solve_lp
-from tol3d.numerics.small_angles import azimuth
+from tol3d.numerics.quick_angles import azimuth
 
 STILL: Final = 1e-11  # rad; turns change by less: at 100 mm that is 1e-9 mm
 MOST_STEPS: Final = 25

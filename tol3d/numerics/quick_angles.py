@@ -1,13 +1,40 @@
-"""Cosines, sines and arc tangents of mostly small angles, in kernels: by series, in a fifth of the time."""
+"""Cosines, sines and azimuths by series, in kernels: a library's calls are most of the time of a short formula."""
 
+import math
 from typing import Final
 
 import numpy as np
 
 from tol3d.numerics.compiled import nested, part
 
+PER_QUARTER = 2.0 / math.pi
+QUARTER_HIGH, QUARTER_LOW = math.pi / 2.0, 6.123233995736766e-17  # together a quarter of a turn to 1e-33
+SINES = tuple((-1.0) ** k / math.factorial(2 * k + 1) for k in range(8))
+COSINES = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(9))
 LITTLE: Final = 2.0**-5  # rad; the first term that a series leaves out is 2e-17 there
 SLIGHT: Final = 2.0**-7  # tangent, of which the series of the arc tangent leaves out 1e-18 of it
+
+
+@part
+def cos_and_sin(angle: float) -> tuple[float, float]:
+    """cos(angle) and sin(angle) to 4e-16, of less than a thousand turns: series about the nearest quarter of a turn."""
+    quarters = math.floor(angle * PER_QUARTER + 0.5)
+    x = (angle - quarters * QUARTER_HIGH) - quarters * QUARTER_LOW
+    y = x * x
+    sin, cos = SINES[7], COSINES[8]
+    for k in range(6, -1, -1):
+        sin = sin * y + SINES[k]
+    for k in range(7, -1, -1):
+        cos = cos * y + COSINES[k]
+    sin *= x
+    quadrant = int(quarters) & 3
+    if quadrant == 0:
+        return cos, sin
+    if quadrant == 1:
+        return -sin, cos
+    if quadrant == 2:
+        return -cos, -sin
+    return sin, -cos
 
 
 @part
