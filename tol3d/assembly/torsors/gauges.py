@@ -96,21 +96,25 @@ def gauges_room(
     whole = np.array(ways) @ free
     _, strengths, right = np.linalg.svd(whole.reshape(2 * len(whole), free.shape[1]))
     seen = right[: int(np.sum(strengths > SEEN))].T
-    motions = to_torsor @ _least(free @ seen, free @ right[seen.shape[1] :].T, reach)
+    motions = to_torsor @ _least(free @ seen, free @ right[seen.shape[1] :].T)
     after = later_datums(later, rest, motions, reach, name) if later else None
     rows = whole[: len(clearances)] @ seen
     return GaugesRoom(rest, motions, (free @ seen).T, np.concatenate(offsets), np.array(clearances), rows, after)
 
 
-def _least(seen: Array, unseen: Array, reach: float) -> Array:
-    """Effective freedoms (6, freedoms), with as much of the others as makes the part turn, then shift least.
+def _least(seen: Array, unseen: Array) -> Array:
+    """Effective freedoms (6, freedoms), with as much of the others as makes the part turn least, and then shift least.
 
-    By one system of least squares in which turns [rad] count for so much more than shifts [mm] that these only decide
-    what turns leave open.
+    Args:
+        seen: shifts [mm] and turns [rad] of the effective ones (6, freedoms).
+        unseen: of the others (6, others).
     """
-    weights = np.array([1.0, 1.0, 1.0, 1e6 / reach, 1e6 / reach, 1e6 / reach])[:, None]
-    amounts = np.linalg.lstsq(weights * unseen, -weights * seen, rcond=None)[0]
-    return np.asarray(seen + unseen @ amounts, dtype=np.float64)
+    _, strengths, right = np.linalg.svd(unseen[3:])
+    turning, shifting = np.split(right.T, [int(np.sum(strengths > SEEN))], axis=1)
+    found = seen
+    for ways, own in ((unseen @ turning, slice(3, 6)), (unseen @ shifting, slice(0, 3))):
+        found = found - ways @ np.linalg.lstsq(ways[own], found[own], rcond=None)[0]
+    return np.asarray(found, dtype=np.float64)
 
 
 def counted(frame: Array, shape: Shape) -> Array:
