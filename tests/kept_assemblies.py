@@ -58,6 +58,9 @@ from tol3d.study.trials.draws import drawn
 KEPT = TESTS / "assembly" / "kept_trials.npz"
 TOLERANCE = 1e-9
 """mm or rad"""
+LOOSE = {"pins": 2e-6, "bolts 9": 5e-7, "fit 7": 5e-5, "fit 3": 5e-3}
+"""The same of a family or a case whose last digits a processor's own sums decide: pins lean along a slack that is flat,
+and of these fits what lies below the largest residuals is not settled."""
 Array = NDArray[np.float64]
 Built = tuple[Assembly, Array]
 """An assembly, and deviations of its trials (trials, columns)."""
@@ -83,12 +86,17 @@ class Found:
     deviations: float
     commit: str = ""
 
-    def agrees(self, other: "Found") -> bool:
-        """True if statuses are the same, and values within TOLERANCE."""
+    def agrees(self, other: "Found", tolerance: float) -> bool:
+        """True if statuses are the same, and values within a tolerance."""
         return np.array_equal(self.codes, other.codes) and all(
-            np.allclose(own, its, rtol=0, atol=TOLERANCE, equal_nan=True)
+            np.allclose(own, its, rtol=0, atol=tolerance, equal_nan=True)
             for own, its in ((self.exact, other.exact), (self.analytic, other.analytic))
         )
+
+
+def tolerance_of(case: str) -> float:
+    """Tolerance of a case such as "touch 7" [mm or rad]."""
+    return LOOSE.get(case) or LOOSE.get(case.rpartition(" ")[0], TOLERANCE)
 
 
 def found(assembly: Assembly, rows: Array) -> Found:
@@ -336,7 +344,7 @@ def write(commit: str) -> None:
     with TemporaryDirectory() as folder:
         for family, k in CASES:
             name, now = f"{family} {k}", replace(found(*made(family, k, Path(folder))), commit=commit)
-            agrees = name in before and before[name].agrees(now)
+            agrees = name in before and before[name].agrees(now, tolerance_of(name))
             after[name] = before[name] if agrees else now
             if not agrees:
                 print(name)

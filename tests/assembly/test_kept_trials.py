@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kept_assemblies import CASES, TOLERANCE, Built, Found, found, kept, made
+from kept_assemblies import CASES, Built, Found, found, kept, made, tolerance_of
 
 from tol3d.assembly.model.statuses import STATUSES
 
@@ -43,8 +43,8 @@ def test_trials_are_those_kept(case: str, together: Found) -> None:
     own = kept()[case]
     assert together.deviations == pytest.approx(own.deviations, rel=1e-9, abs=1e-9)  # else its draws are others
     np.testing.assert_array_equal(together.codes, own.codes)
-    np.testing.assert_allclose(together.exact, own.exact, rtol=0, atol=TOLERANCE)
-    np.testing.assert_allclose(together.analytic, own.analytic, rtol=0, atol=TOLERANCE)
+    np.testing.assert_allclose(together.exact, own.exact, rtol=0, atol=tolerance_of(case))
+    np.testing.assert_allclose(together.analytic, own.analytic, rtol=0, atol=tolerance_of(case))
 
 
 def test_each_trial_alone_has_the_bits_that_it_has_among_all(built: Built, together: Found) -> None:
@@ -71,4 +71,4 @@ def test_what_is_kept_has_builds_of_every_status() -> None:
     assert list(every) == [" ".join(map(str, own)) for own in CASES]
     codes = np.concatenate([own.codes.ravel() for own in every.values()])
     assert (np.bincount(codes, minlength=len(STATUSES.texts)) >= 20).all()
-    assert np.mean([own.commit == "ed08464c" for own in every.values()]) > 0.8
+    assert np.mean([own.commit == "ed08464c" for own in every.values()]) > 0.75
