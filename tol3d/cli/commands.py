@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 SHIPPED: Final = (
     "tol3d.cli.studies:run",
+    "tol3d.apps.workbench.commands:app",
     "tol3d.cli.showing:scenes",
     "tol3d.apps.drafting.commands:new",
     "tol3d.cli.showing:check",

@@ -1,0 +1,275 @@
+"""The card of a measure: its verdict, its distribution before and now, and a slider for each tolerance that acts on it."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from tol3d.analyses.before_after import limits_of
+from tol3d.analyses.response import Response
+from tol3d.analyses.scope import Scope
+from tol3d.analyses.stated_changes import told
+from tol3d.apps.workbench.session import Evaluated, Session
+from tol3d.apps.workbench.workspace import WhatIf
+from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
+from tol3d.report.chart import Axis, Chart, Filled, Mark, Outline, Panel, Series
+from tol3d.report.html.blocks import Inside, Markup, tag, together
+from tol3d.report.html.frame import NARROW
+from tol3d.report.html.svg import svg
+from tol3d.report.measure_charts import out_text, spanned
+from tol3d.report.number import bounded_share_text, limit_text, limits_text, measured_text, percent_text
+from tol3d.statistics.distributions import Distribution
+from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.sample import Sample
+from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.draw import Draw
+from tol3d.study.system.other_laws import Zoned
+
+BINS: Final = 40
+LONG: Final = 1000.0 + 1e-6  # um; longer lengths are shown in mm, as reports do
+STEPS: Final = 100
+"""Steps of a slider to either side of the scene's tolerance."""
+WIDEST: Final = 4.0
+"""Factor at the ends of a slider, where nothing ends it before."""
+KINDS: Final = {"OK": "ok", "NOT OK": "not-ok", "too few trials": "open", "no limits": "none"}
+FULL: Final = 0.9
+"""Fraction of the variance from which on shares add up; below it what is not attributed stands first."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Unit of a measure's numbers, and what of its own unit is one of them."""
+
+    unit: str
+    per: float = 1.0
+
+    @classmethod
+    def of(cls, evaluated: Evaluated) -> "Shown":
+        """Millimetres of a length over one, as in reports."""
+        measure, mean = evaluated.measure, evaluated.sample.mean
+        if measure.unit == "um" and mean is not None and abs(mean) > LONG:
+            return cls("mm", 1e-3)
+        return cls(measure.unit)
+
+    def text(self, value: float | None) -> str:
+        """A value with its unit."""
+        return measured_text(None if value is None else self.per * value, self.unit)
+
+
+def answer(base: Evaluated, now: Evaluated) -> Markup:
+    """Verdict and the numbers that it rests on, with those of the scene where something is moved.
+
+    Args:
+        base: by the scene's tolerances.
+        now: by those that are tried.
+    """
+    shown, judged, moved = Shown.of(base), now.judged, now is not base
+    limits = limits_of(now.measure)
+    low, high = (None if (own := limits.get(side)) is None else shown.per * own for side in ("low", "high"))
+    rows = [*_numbers(now.sample, shown)]
+    before = dict(_numbers(base.sample, shown)) if moved else {}
+    if judged.verdict != "no limits":
+        rows.insert(0, ("out of limits", bounded_share_text(judged.out_ppm, judged.interval)))
+        if moved:
+            before["out of limits"] = bounded_share_text(base.judged.out_ppm, base.judged.interval)
+    cells = (
+        tag("tr", tag("th", name, scope="row"), tag("td", own), tag("td", before.get(name, ""), class_="dim") if moved else None)
+        for name, own in rows
+    )
+    head = tag("tr", tag("th", "", scope="col"), tag("th", "now", scope="col"), tag("th", "scene", scope="col")) if moved else None
+    trials = f"{now.done} of {now.count} trials" if now.done < now.count else f"{now.count} trials"
+    failed = now.sample.trials - now.sample.count
+    words = f"limits {limits_text(low, high, shown.unit)} · " if judged.verdict != "no limits" else ""
+    more = f" · {failed} of them not assembled" if failed else ""
+    return together(
+        tag("p", judged.verdict, class_=f"verdict {KINDS[judged.verdict]}"),
+        tag("p", f"{words}{trials}{more}", class_="dim"),
+        tag("table", head, *cells),
+    )
+
+
+def _numbers(sample: Sample, shown: Shown) -> Iterator[tuple[str, str]]:
+    spread = Shown("um") if shown.unit == "mm" else shown
+    if sample.ppk is not None:
+        yield "Ppk", f"{sample.ppk:.2f}"
+    yield "mean", shown.text(sample.mean)
+    yield "sigma", spread.text(sample.sigma)
+    yield "0.135 to 99.865 %", f"{shown.text(sample.p0_135)} to {shown.text(sample.p99_865)}"
+
+
+def histogram(base: Evaluated, now: Evaluated | None, estimate: Array | None) -> Markup:
+    """The distribution by the scene's tolerances, by those that are tried, and its estimate, dashed.
+
+    Args:
+        base: by the scene's.
+        now: by others, as far as they are simulated; None while a tolerance moves.
+        estimate: values by others, of slopes alone; None for none.
+    """
+    shown, solid = Shown.of(base), base if now is None else now
+    parts = [base.good, *([now.good] if now is not None else []), *([] if estimate is None else [estimate[np.isfinite(estimate)]])]
+    every = shown.per * np.concatenate(parts)
+    if not every.size:
+        return tag("p", "no build could be assembled", class_="warning")
+    low, high = float(every.min()), float(every.max())
+    edges = np.linspace(low, high, BINS + 1) if high > low else np.array([low - 0.5, low + 0.5])
+    series = list[Series]()
+    if now is not None and now is not base:
+        series.append(Outline(edges, _percent(base, shown, edges), "soft", "scene"))
+    limits = {side: shown.per * own for side, own in limits_of(base.measure).items()}
+    middles = (edges[1:] + edges[:-1]) / 2
+    beyond = (middles < limits.get("low", -math.inf)) | (middles > limits.get("high", math.inf))
+    words = "simulated" if solid is now and now is not base else "scene"
+    series.append(Filled(edges, _percent(solid, shown, edges), "geometric", words, beyond, range(len(middles)), ()))
+    if estimate is not None:
+        heights = 100.0 * np.histogram(shown.per * estimate, edges)[0] / max(len(estimate), 1)
+        series.append(Outline(edges, heights, "analytic", "estimate", dashed=True))
+    sample = solid.sample
+    ppm = {"low": sample.below_limit_ppm, "high": sample.above_limit_ppm}
+    marks = [
+        Mark(
+            limit, "limit",
+            (f"{'LSL' if side == 'low' else 'USL'} {limit_text(limit, shown.unit)}", out_text(ppm[side], "below" if side == "low" else "above")),
+            upper=side == "high",
+        )
+        for side, limit in limits.items()
+    ]  # fmt: skip
+    top = max(float(own.heights.max()) for own in series if isinstance(own, Filled | Outline))
+    across = spanned(base.measure.name, np.array([edges[0], edges[-1], *limits.values()]), shown.unit)
+    chart = Chart(
+        f"histogram of {base.measure.name}", across, [Panel(Axis("% of trials", 0.0, 1.05 * top or 1.0), series, marks, 0.8)],
+        base.measure.name, table=[(mark.words[0], mark.words[1]) for mark in marks],
+    )  # fmt: skip
+    return together(svg(chart, NARROW), _legend(series))
+
+
+def _percent(own: Evaluated, shown: Shown, edges: Array) -> Array:
+    return np.asarray(100.0 * np.histogram(shown.per * own.good, edges)[0] / max(own.done, 1))
+
+
+def _legend(series: Sequence[Series]) -> Markup:
+    looks = {"soft": "line soft", "geometric": "fill geometric", "analytic": "line dashed analytic"}
+    named = ((looks[own.role], own.label) for own in series if isinstance(own, Filled | Outline))
+    return tag("p", *(tag("span", tag("i", class_=look), label) for look, label in named), class_="legend")
+
+
+# sliders ------------------------------------------------------------------------------------------
+
+
+def sliders(session: Session, measure: str, now: WhatIf, summary: MeasureSummary | None) -> Markup:
+    """A slider and a field for each line of the scene whose contributors act on a measure, the largest share first.
+
+    Args:
+        session: the scene.
+        measure: its name.
+        now: what is moved.
+        summary: of a run of the scene, which knows shares; None until there is one.
+    """
+    shares = _shares(session.response, summary) if summary is not None else {}
+    lines = sorted(session.acting(measure), key=lambda line: -shares.get(line, 0.0))
+    if not lines:
+        return tag("p", session.response.nothing_acts(session.measure(measure)) or "no tolerance acts on it", class_="note")
+    first = [*_not_attributed(summary)] if summary is not None else []
+    return together(*first, tag("ul", *(_slider(session, line, now, shares.get(line)) for line in lines), class_="sliders"))
+
+
+def _shares(response: Response, summary: MeasureSummary) -> Mapping[str, float]:
+    """Share of the variance by line of the scene [%], by the method that the verdict states."""
+    key = f"{summary.best_method}_percent"
+    known = {own.name: own[key] or 0.0 for own in summary.contributors}
+    return {line: sum(known.get(name, 0.0) for name in names) for line, names in response.lines.items()}
+
+
+def _not_attributed(summary: MeasureSummary) -> Iterator[Markup]:
+    own = (summary.shares_by or {}).get(summary.best_method)
+    if own is not None and own.explained_percent is not None and own.explained_percent < 100 * FULL:
+        words = f"not attributed by regression: {percent_text(100 - own.explained_percent)} %; shares are by {own.by}"
+        yield tag("p", words, class_="warning")
+
+
+def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Markup:
+    response = session.response
+    names = response.lines[line]
+    contributor = next(own for own in response.contributors if own.name == names[0])
+    draw, moved = response.drawn_by(names[0]), line in now
+    scope = response.scope(line)
+    try:
+        other = session.changed({line: now[line]}).drawn_by(names[0]) if moved else draw
+    except InputError:
+        other = draw
+    each = f" · each of {len(names)}" if len(names) > 1 else ""
+    words = [tag("span", f"{told(contributor, draw)}{each}", class_="dim")]
+    if share is not None:
+        words.append(tag("span", f"{percent_text(share)} %", class_="share"))
+    ends = _ends(scope)
+    inside = list[Inside]([tag("div", tag("b", line), *words, class_="head")])
+    if ends is None:
+        inside.append(tag("p", f"stays as it is: {scope.above}", class_="note"))
+    else:
+        low, high = ends
+        at = round(STEPS * math.log(_factor(draw, other)) / math.log(WIDEST))
+        inside.append(
+            tag(
+                "div",
+                tag(
+                    "input", type="range", min=low, max=high, value=min(max(at, low), high), step=1, data_line=line,
+                    aria_label=f"{line}: how wide", title=_why(scope),
+                ),
+                tag("input", type="text", value=_written(contributor, other), data_line=line, aria_label=f"{line}: tolerance"),
+                class_="move",
+            )
+        )  # fmt: skip
+    return tag("li", *inside, class_="moved" if moved else None, data_line=line)
+
+
+def _ends(scope: Scope) -> tuple[int, int] | None:
+    """Ends of a slider in its steps; None where nothing can be moved."""
+    if scope.factors is None:
+        return None
+    low, high = (STEPS * math.log(min(max(own, 1 / WIDEST), WIDEST)) / math.log(WIDEST) for own in scope.factors)
+    return math.ceil(low), math.floor(high)
+
+
+def written_words(session: Session, now: WhatIf) -> Mapping[str, str]:
+    """What is moved as its field shows it, by line."""
+    response, found = session.changed(now), dict[str, str]()
+    known = {own.name: own for own in response.contributors}
+    for line in now:
+        name = response.lines[line][0]
+        found[line] = _written(known[name], response.drawn_by(name))
+    return found
+
+
+def _why(scope: Scope) -> str | None:
+    """Reasons why a slider ends before its usual ends."""
+    assert scope.factors is not None
+    reasons = [why for why, end in ((scope.below, scope.factors[0] > 1 / WIDEST), (scope.above, scope.factors[1] < WIDEST)) if end]
+    return "; ".join(reasons) or None
+
+
+def _factor(draw: Draw, other: Draw) -> float:
+    """Width of a draw by that of another, about."""
+    own, its = (_width(each) for each in (draw, other))
+    return its / own if own > 0.0 and its > 0.0 else 1.0
+
+
+def _width(draw: Draw) -> float:
+    if isinstance(draw, Zoned):
+        return draw.width
+    law = draw.distribution
+    if isinstance(law, Distribution) and law.limits is not None:
+        return law.limits[1] - law.limits[0]
+    return float(getattr(law, "scale", law.sigma))
+
+
+def _written(contributor: Contributor, draw: Draw) -> str:
+    """A tolerance as `--set` takes it: ±20 um, -30 um..-19 um, or the width of a zone."""
+    per, unit, law = contributor.per_unit, "" if contributor.unit == "1" else f" {contributor.unit}", draw.distribution
+    if isinstance(draw, Zoned):
+        return f"{draw.width / per:.6g}{unit}"
+    if isinstance(law, Distribution) and law.limits is not None:
+        low, high = (float(f"{own / per:.6g}") for own in law.limits)
+        return f"±{high:g}{unit}" if low == -high else f"{low:g}{unit}..{high:g}{unit}"
+    return f"{getattr(law, 'scale', law.sigma) / per:.6g}{unit}"

@@ -1,0 +1,227 @@
+"""Questions of the app's page and their answers: plain data, with pieces of HTML.
+
+They are asked one at a time, in one thread, and each takes a fraction of a second; beside them one run of the scene is
+made, from which shares of contributors come. The page names scenes by the workspace's list.
+"""
+
+import difflib
+from collections.abc import Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Final
+
+from tol3d.analyses.kept_changes import scene_with
+from tol3d.apps.workbench.card import answer, histogram, sliders, written_words
+from tol3d.apps.workbench.session import AT_ONCE, FEW, Session
+from tol3d.apps.workbench.text_check import checked
+from tol3d.apps.workbench.tree import parts_of, tree
+from tol3d.apps.workbench.workspace import MOST_KEPT, Notes, Workspace, digest, written
+from tol3d.errors import InputError, SceneError
+from tol3d.simulate import Overrides, run_scene
+from tol3d.study.runs.run import Run
+
+Told = Mapping[str, Any]
+MOST_OPEN: Final = 3
+"""Scenes in memory."""
+SHARED: Final = 20_000
+"""Trials of the run that shares come from, at most; of a slow scene as many as take SHARES_WITHIN."""
+SHARES_WITHIN: Final = 20.0  # s, about
+class Stale(InputError):
+    """The file is not the one that was read."""
+
+
+@dataclass(eq=False)
+class Questions:
+    """What the app has open.
+
+    Args:
+        workspace: the folder.
+        trust_parts, run_builders: as `tol3d run` has them.
+        read_only: True where another app writes in this folder.
+    """
+
+    workspace: Workspace
+    trust_parts: bool = False
+    run_builders: bool = False
+    read_only: bool = False
+    sessions: dict[str, Session] = field(default_factory=dict)
+    runs: dict[str, "Future[Run]"] = field(default_factory=dict)
+    beside: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "shares"))
+    scratch: TemporaryDirectory[str] = field(default_factory=partial(TemporaryDirectory, prefix="tol3d-app-"))
+
+    def session(self, name: str) -> Session:
+        """An open scene; it is read again where its file has changed.
+
+        Raises:
+            SceneError, InputError: as `tol3d check` says.
+        """
+        path = self.workspace.scene(name)
+        known = self.sessions.pop(name, None)
+        if known is None or known.content != path.read_bytes():
+            known = Session.opened(path, trust_parts=self.trust_parts, run_builders=self.run_builders)
+            known.require_contributors()
+        self.sessions[name] = known
+        while len(self.sessions) > MOST_OPEN:
+            del self.sessions[next(iter(self.sessions))]
+        return known
+
+    def scene(self, asked: Told) -> Told:
+        """A scene as the page shows it first: its text, its tree and its measures, or what is wrong with it."""
+        name = str(asked["scene"])
+        path, notes = self.workspace.scene(name), self.workspace.notes(name)
+        content = path.read_bytes()
+        found: dict[str, Any] = {
+            "text": content.decode("utf-8", "replace"),
+            "digest": digest(content),
+            "notes": {"now": dict(notes.now), "beside": [dict(own) for own in notes.beside], "measure": notes.measure},
+            "problems": [],
+        }
+        try:
+            session = self.session(name)
+        except InputError as error:
+            return found | {"problems": _problems(error)}
+        measures = [{"name": own.name, "unit": own.unit} for own in session.response.measures]
+        return found | {
+            "title": session.scene.scene,
+            "description": session.scene.description,
+            "measures": measures,
+            "tree": tree(session.scene),
+            "warnings": [*session.simulation.warnings],
+            "compiled": session.simulation.system.is_compiled(session.simulation.study.engine),
+        }
+
+    def card(self, asked: Told) -> Told:
+        """A measure by the tolerances that are tried, by as many builds as could be evaluated by now."""
+        session, measure, now = self._asked(asked)
+        base = session.evaluated(measure, {})
+        base.go_on(AT_ONCE, FEW)
+        tried = session.evaluated(measure, now) if now else base
+        if now:
+            tried.go_on(AT_ONCE, min(FEW, tried.count))
+        first = base if base.done < base.count and not now else tried
+        return {
+            "answer": answer(base, tried),
+            "chart": histogram(base, tried, None),
+            "written": written_words(session, now),
+            "done": first.done,
+            "of": first.count,
+            "left": round(first.left, 1),
+        }
+
+    def estimate(self, asked: Told) -> Told:
+        """The distribution while a tolerance moves: by slopes, on kept builds."""
+        session, measure, now = self._asked(asked)
+        base = session.evaluated(measure, {})
+        base.go_on(0.0, FEW)
+        chart = histogram(base, None, session.estimate(measure, now) if now else None)
+        return {"chart": chart, "written": written_words(session, now)}
+
+    def sliders(self, asked: Told) -> Told:
+        """A slider for each tolerance that acts on a measure; by shares as soon as a run knows them."""
+        session, measure, now = self._asked(asked)
+        run = self._run(str(asked["scene"]), session)
+        summary = run.result().found.measures.get(measure) if run.done() and run.exception() is None else None
+        lines = session.acting(measure)
+        entries = {own.name: own.entries for own in session.simulation.lines}
+        return {
+            "sliders": sliders(session, measure, now, summary),
+            "waits": not run.done(),
+            "acting": [*lines],
+            "parts": parts_of(session.scene, lines, entries),
+            "entries": [entry for line in lines for entry in entries.get(line, (line,))],
+        }
+
+    def notes(self, asked: Told) -> Told:
+        """Keep what is moved beside the scene, so that it is there after a reload."""
+        name, now = str(asked["scene"]), _changes(asked.get("now"))
+        beside = tuple(_changes(own) for own in asked.get("beside", ())[:MOST_KEPT])
+        self.workspace.scene(name)
+        if not self.read_only:
+            self.workspace.note(name, Notes(now, beside, str(asked.get("measure", ""))))
+        return {}
+
+    def check(self, asked: Told) -> Told:
+        """What `tol3d check` says of a text that is not written yet."""
+        path = self.workspace.scene(str(asked["scene"]))
+        _, problems, warnings = checked(str(asked["text"]), path)
+        return {"problems": [*problems], "warnings": [*warnings]}
+
+    def keep(self, asked: Told) -> Told:
+        """What is moved as a change of the scene's text: the difference, or that written."""
+        session, _, now = self._asked(asked)
+        text = scene_with(session.response, session.scene, session.changes(now)).text
+        before = session.content.decode("utf-8")
+        if not asked.get("write"):
+            return {"diff": _difference(before, text, session.path.name), "digest": session.digest}
+        self._write(session.path, text, str(asked["digest"]))
+        self.notes({**asked, "now": {}})
+        return {"digest": digest(text.encode())}
+
+    def save(self, asked: Told) -> Told:
+        """Write the text, right or wrong, as any editor does."""
+        path = self.workspace.scene(str(asked["scene"]))
+        self._write(path, str(asked["text"]), str(asked["digest"]))
+        return {"digest": digest(path.read_bytes())}
+
+    def changed(self, asked: Told) -> Told:
+        """Name of the file's content, by which the page sees that others have changed it."""
+        return {"digest": digest(self.workspace.scene(str(asked["scene"])).read_bytes())}
+
+    def folder(self, asked: Told) -> Told:
+        """The scenes of the folder."""
+        del asked
+        return {
+            "folder": self.workspace.folder.name,
+            "scenes": [*self.workspace.scenes],
+            "first": self.workspace.first,
+            "read_only": self.read_only,
+        }
+
+    def _write(self, path: Path, text: str, known: str) -> None:
+        if self.read_only:
+            raise InputError("expected the only app on this folder, but another one has it open: this one only reads")
+        if digest(path.read_bytes()) != known:
+            raise Stale(f"{path.name} was changed by another program since it was read here: load the page again")
+        content = text.encode()
+        written(path, content.replace(b"\n", b"\r\n") if b"\r\n" in path.read_bytes() and b"\r\n" not in content else content)
+
+    def _asked(self, asked: Told) -> tuple[Session, str, Mapping[str, str]]:
+        session = self.session(str(asked["scene"]))
+        return session, session.measure(str(asked.get("measure", ""))).name, _changes(asked.get("now"))
+
+    def _run(self, name: str, session: Session) -> "Future[Run]":
+        """A run of the scene, which knows shares; it is made once for each state of the file."""
+        key = f"{name}-{session.digest[:16]}"
+        if key not in self.runs:
+            self.runs[key] = self.beside.submit(self._made_run, session, Path(self.scratch.name) / key)
+        return self.runs[key]
+
+    def _made_run(self, session: Session, folder: Path) -> Run:
+        builds = min(session.simulation.study.trials, SHARED)
+        paces = [own.pace for own in session._evaluated.values() if own.done > FEW]
+        if paces and builds * max(paces) * len(session.response.measures) > SHARES_WITHIN:
+            builds = min(builds, FEW)
+        return run_scene(session.scene, overrides=Overrides(trials=builds, witness=0), out=folder, force=True)
+
+    def close(self) -> None:
+        """Let its threads end and remove what it made for itself."""
+        self.beside.shutdown(wait=True, cancel_futures=True)
+        self.scratch.cleanup()
+
+
+def _changes(told: Any) -> dict[str, str]:
+    return {str(key): str(value) for key, value in (told or {}).items()}
+
+
+def _problems(error: InputError) -> list[dict[str, Any]]:
+    if isinstance(error, SceneError):
+        return [{"line": getattr(own, "line", 1), "message": str(own)} for own in error.problems]
+    return [{"line": 1, "message": str(error)}]
+
+
+def _difference(before: str, after: str, name: str) -> str:
+    lines = difflib.unified_diff(before.splitlines(), after.splitlines(), name, name, "as it is", "kept", n=1, lineterm="")
+    return "\n".join(lines)
