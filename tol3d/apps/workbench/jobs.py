@@ -129,7 +129,7 @@ class Jobs:
     def __init__(self, lock: FolderLock) -> None:
         self._lock = lock
         self._folder = lock.folder
-        self._processes = dict[int, subprocess.Popen[bytes]]()
+        self._processes: dict[int, subprocess.Popen[bytes]] = {}
         self._starting = threading.RLock()
 
     def list(self) -> tuple[Job, ...]:
@@ -310,6 +310,9 @@ class Jobs:
             began = time.monotonic()
             while attempt.progress() is None and process.poll() is None and time.monotonic() - began < STARTS_WITHIN:
                 time.sleep(LOOK_S)
+            if attempt.progress() is None and process.poll() is not None:
+                words = f"its process ended with {process.returncode} as it started: see {attempt.place / 'output.txt'}"
+                attempt.write(Progress("failed", message=words))
             return _Last(attempt, order).job()
 
     def _next(self) -> Attempt:

@@ -30,6 +30,7 @@ def _is_value(value: object) -> bool:
 
 
 WHOLE: Final = Word("a whole number from 0 on", lambda value: type(value) is int and value >= 0)
+COUNT: Final = Word("a whole number from 1 on", lambda value: type(value) is int and value >= 1)
 NUMBER: Final = Word("a number", _is_number)
 TEXT: Final = Word("a text", lambda value: isinstance(value, str))
 YES_NO: Final = Word("true or false", lambda value: isinstance(value, bool))
@@ -42,7 +43,7 @@ VALUES: Final = Word(
 )
 
 WORDS: Final[Mapping[str, Mapping[str, Word]]] = {
-    "run": {"trials": WHOLE},
+    "run": {"trials": COUNT},
     "report": {},
     "what_if": {
         "set": VALUES,
