@@ -21,8 +21,8 @@ from tol3d import InputError, Overrides, RunError, load_scene, open_run, run_sce
 from tol3d.analyses import answers
 from tol3d.apps.workbench import job as job_module
 from tol3d.apps.workbench import jobs as jobs_module
-from tol3d.apps.workbench.answer import NAMES, kept_answer
-from tol3d.apps.workbench.attempt import JOBS, Attempt, Order, Progress
+from tol3d.apps.workbench.answer import NAMES, keep_answer, kept_answer
+from tol3d.apps.workbench.attempt import ANSWER, JOBS, Attempt, Order, Progress
 from tol3d.apps.workbench.jobs import Analysis, Job, Jobs
 from tol3d.apps.workbench.place import APP, FolderLock
 from tol3d.apps.workbench.words import WORDS
@@ -225,6 +225,16 @@ def test_an_answer_is_kept_as_the_analysis_gives_it(story: Story) -> None:
     assert kept.charts.rows
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", get_args(Analysis))
+def test_each_answer_is_shown_again_as_it_was(kind: Analysis, tmp_path: Path) -> None:
+    asked = getattr(answers, kind)(SPUR_PAIR, **({"set": {"centre distance": "±10 um"}} if kind == "what_if" else {}))
+    keep_answer(asked, tmp_path)
+    kept = kept_answer(tmp_path / ANSWER, kind, "spur pair at the drive end")
+    assert page_html(kept.page) == page_html(asked.page)
+    assert len(kept.charts.rows) == len(asked.charts().rows) > 0
+
+
 def test_a_damaged_answer_is_refused(story: Story, tmp_path: Path) -> None:
     found = json.loads(story.answer.read_text("utf-8"))
     damaged = tmp_path / "answer.json"
@@ -301,15 +311,22 @@ def test_no_link_leads_out_of_the_folder(tmp_path: Path) -> None:
         assert refused(lambda scene=scene: jobs.start(Path(scene)))[0].endswith(  # type: ignore[misc]
             f"leads out of {folder}; expected a place in it, without links out"
         )
-    (folder / "runs").symlink_to(outside)
-    job = jobs.start(SCENE, trials=5)
-    assert "leads out of" in refused(lambda: jobs.report_of("linked.yaml"))[0]
-    until(lambda: jobs.job(job.id).state == "failed")
-    assert (
-        jobs.job(job.id).message
-        == f"{folder / 'runs'}: leads out of {folder}; expected a place in it, without links out"
-    )
-    assert [path.name for path in outside.iterdir()] == ["linked.yaml"]
+
+
+@pytest.mark.parametrize("link", ["runs", "runs/spur_pair", "runs/spur_pair.partial"])
+def test_a_run_that_would_lead_out_of_the_folder_is_refused(link: str, tmp_path: Path) -> None:
+    folder, outside = tmp_path / "folder", tmp_path / "outside"
+    folder.mkdir()
+    outside.mkdir()
+    jobs = left(folder, replace(ORDER, kind="run", words={"trials": 5}, run="spur_pair"))
+    (folder / link).parent.mkdir(exist_ok=True)
+    (folder / link).symlink_to(outside)
+    job_module.main(str(folder), "1")
+    (job,) = jobs.list()
+    assert job.state == "failed"
+    assert f"leads out of {folder}; expected a place in it, without links out" in job.message
+    assert list(outside.iterdir()) == []
+    assert "leads out of" in refused(lambda: jobs.report_of("spur_pair" if link == "runs" else Path(link).name))[0]
 
 
 def test_the_app_s_own_place_does_not_lead_out_either(tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ from tol3d.study.runs import write_whole
 JOBS: Final = f"{APP}/jobs"
 RUNS: Final = "runs"
 ANSWER: Final = "answer.json"
-NUMBER: Final = re.compile(r"[0-9]{4,9}")
+NUMBER: Final = re.compile(r"[0-9]{4,}")
 LARGEST: Final = 1_000_000  # bytes of an order or a progress
 PROBE_S: Final = 0.02  # s; others hold a lock for less than this when they look whether it is held
 STARTS_WITHIN: Final = 10.0  # s; a process that has not begun to live by then will not

@@ -63,7 +63,7 @@ class Job:
         done, of: trials; of that ends by itself, the most. 0 of analyses and reports.
         words: activity.
         started: time of its turn, or before that when it was asked for; ISO 8601.
-        run: folder of its run; None until there is one.
+        run: folder that its run has once it is done; None until that is known.
         message: for the user, if it failed.
     """
 
@@ -88,10 +88,7 @@ class _Last:
     order: Order
 
     def seen(self) -> tuple[State, Progress]:
-        """State and progress; asked again of a process that is gone, which may have ended in between."""
-        progress = self.attempt.progress() or Progress()
-        if progress.is_ended:
-            return progress.state, progress
+        """State and progress, in that order: what a process that is gone has said is its last word."""
         lives = self.attempt.is_alive()
         progress = self.attempt.progress() or Progress()
         if progress.is_ended:
@@ -160,7 +157,7 @@ class Jobs:
             InputError: another app writes in the folder, or no scene of the folder.
         """
         words: Words = {} if trials is None else {"trials": trials}
-        return self._asked("run", scene, words, trust_parts=trust_parts, run_builders=run_builders)
+        return self._asked("run", scene, words, {"trust_parts": trust_parts, "run_builders": run_builders})
 
     def analyse(
         self,
@@ -184,9 +181,9 @@ class Jobs:
         """
         if kind not in get_args(Analysis):
             raise InputError(f"expected {', '.join(get_args(Analysis))}, got {kind!r}")
-        return self._asked(kind, scene, words, trust_parts=trust_parts, run_builders=run_builders)
+        return self._asked(kind, scene, words, {"trust_parts": trust_parts, "run_builders": run_builders})
 
-    def _asked(self, kind: Kind, scene: Path, words: Words, **trusted: bool) -> Job:
+    def _asked(self, kind: Kind, scene: Path, words: Words, trusted: Mapping[str, bool]) -> Job:
         place = inside(self._folder / scene, self._folder)
         if not place.is_file():
             raise InputError(
@@ -229,7 +226,7 @@ class Jobs:
             if state in ("waiting", "running", "done"):
                 raise InputError(f"job {id}: expected one that has stopped, this one is {state}")
             scene = inside(self._folder / last.order.scene, self._folder)
-            if progress.sha256 and read_file(scene).sha256 != progress.sha256:
+            if progress.run and read_file(scene).sha256 != progress.sha256:
                 raise InputError(
                     f"{scene}: was changed since this run began, and old and new trials do not go together; run the "
                     "scene anew, which keeps the old ones, or undo the change"
