@@ -35,10 +35,12 @@ BLOCK = 2000  # trials
 TRIALS = 20 * BLOCK
 HANGS = 300.0  # s; a guard against waiting for ever, no claim
 
-# a job's process with small blocks, each made to last 0.1 s on the one core that it sees, whatever the machine
+# a job's process with small blocks, each made to last 0.1 s on the one core that it sees, whatever the machine; it has
+# all the time to end in order
 SLOW_BLOCKS = f"""
 import os, sys, time
-from tol3d.apps.workbench import job
+from tol3d.apps.workbench import job, monitor
+monitor.PATIENCE_S = {HANGS}
 os.cpu_count = lambda: 1
 really = job.named
 def named(path):
@@ -84,6 +86,7 @@ class Story:
     resumed: Job
     cancelled: Job
     cancelled_at_once: bool
+    cancelled_ended_with: int | None
     kept_by_cancelled: int
     seen_later: tuple[Job, ...]
     end: Job
@@ -114,8 +117,10 @@ def story(tmp_path_factory: pytest.TempPathFactory) -> Story:
 
     lock = FolderLock(folder)
     jobs = Jobs(lock)
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # as of an app that a shell started by `&`
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(subprocess, "Popen", noted)
+        patch.setattr(jobs_module, "PATIENCE_S", HANGS)
         patch.setattr(jobs_module, "COMMAND", (sys.executable, "-P", "-c", SLOW_BLOCKS))
         begun = jobs.start(SCENE, trials=TRIALS)
         other = jobs.start(SCENE, trials=5)
@@ -134,7 +139,7 @@ def story(tmp_path_factory: pytest.TempPathFactory) -> Story:
         cancelled = jobs.cancel(begun.id)
         cancelled_at_once = started[-1].poll() is None
         started[-1].send_signal(signal.SIGCONT)
-        started[-1].wait(HANGS)
+        cancelled_ended_with = started[-1].wait(HANGS)
         kept_by_cancelled = blocks(folder)
         jobs.resume(begun.id)
         analysis = jobs.analyse(SCENE, "what_if", {"set": {"centre distance": "±10 um"}, "quick": True})
@@ -146,6 +151,7 @@ def story(tmp_path_factory: pytest.TempPathFactory) -> Story:
         refusals += refused(
             lambda: later.cancel(begun.id), lambda: later.resume(begun.id), lambda: later.answer("0001")
         )
+    signal.signal(signal.SIGINT, before)
     return Story(
         folder,
         later,
@@ -158,6 +164,7 @@ def story(tmp_path_factory: pytest.TempPathFactory) -> Story:
         resumed,
         cancelled,
         cancelled_at_once,
+        cancelled_ended_with,
         kept_by_cancelled,
         seen_later,
         later.job(begun.id),
@@ -176,6 +183,7 @@ def test_a_killed_job_is_interrupted_and_keeps_its_blocks(story: Story) -> None:
 def test_a_cancelled_job_keeps_its_blocks_and_its_caller_does_not_wait(story: Story) -> None:
     assert (story.cancelled.state, story.end.state) == ("cancelled", "done")
     assert story.cancelled_at_once
+    assert story.cancelled_ended_with == 0
     assert story.kept_by_killed <= story.kept_by_cancelled < TRIALS // BLOCK
 
 
@@ -393,6 +401,19 @@ def test_an_order_that_a_stranger_wrote_is_looked_at_before_it_is_resumed(
     jobs = left(tmp_path, order)
     assert [job.state for job in jobs.list()] == ["interrupted"]
     assert message in refused(lambda: jobs.resume("0001"))[0]
+
+
+def test_a_run_whose_process_was_killed_after_its_end_is_not_made_again(tmp_path: Path) -> None:
+    order = replace(ORDER, kind="run", words={"trials": 5})
+    jobs = left(tmp_path, order)
+    job_module.main(str(tmp_path), "1")
+    summary = tmp_path / "runs" / "spur_pair" / "summary.json"
+    made = summary.stat()
+    Attempt(tmp_path, 2).place.mkdir()
+    Attempt(tmp_path, 2).write(replace(order, run="spur_pair"))
+    job_module.main(str(tmp_path), "2")
+    assert [(job.state, job.done, job.of) for job in jobs.list()] == [("done", 5, 5)]
+    assert summary.stat() == made
 
 
 @pytest.mark.parametrize("run", ["../elsewhere", "..", "/etc"])
