@@ -179,12 +179,25 @@ def sections_of(run: Run) -> Mapping[str, Section]:
 
 def _section(run: Run, name: str) -> Section:
     file = f"{FOLDER}/{name}.json"
+    return section_of(name, run.manifest.content(file), run.path / file)
+
+
+def section_of(name: str, content: bytes, path: Path) -> Section:
+    """A section from its JSON, which a stranger may have made.
+
+    Args:
+        name: of the analysis, see KEPT.
+        content: the JSON, as of `text_of_section`.
+        path: of its file, for messages.
+
+    Raises:
+        RunError: it is damaged.
+    """
     kind: type[Section] = named(KEPT[name].section)
-    content = parsed(run.manifest.content(file), run.path / file)
     try:
-        return kind.model_validate(content)
+        return kind.model_validate(parsed(content, path))
     except ValueError:
-        raise RunError(f"{run.path / file}: it is damaged, or of another tol3d; ask for {name} again") from None
+        raise RunError(f"{path}: it is damaged, or of another tol3d; ask for {name} again") from None
 
 
 def text_of_section(found: Section) -> str:

@@ -3,7 +3,9 @@
     folder       scenes, runs, what may be read    workspace.py    Workspace
     session      text -> scene -> response, draws  session.py      Session
     live         estimate at once, then solid      live.py         Live
-    jobs         runs and analyses in children     jobs.py         Jobs
+    place        .tol3d/app/, one app writes       place.py        FolderLock
+    jobs         runs and analyses in children     jobs.py         Jobs            (job.py: a child, work.py)
+    answers      kept, shown again                 answer.py       kept_answer
     page         card, tree, builds as HTML        card.py, tree.py, builds.py
     requests     who may ask what                  guard.py, server.py
 
