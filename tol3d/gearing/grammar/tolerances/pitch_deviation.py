@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from itertools import accumulate, chain
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 from typing_extensions import override
@@ -22,6 +22,7 @@ from tol3d.gearing.draws.pitch_draw import (
 )
 from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
 from tol3d.gearing.grammar.tolerances.flank_tolerance import (
+    OF_CLASSES,
     FlankToleranceSpec,
     IsoClass,
     RecordSpec,
@@ -189,6 +190,14 @@ class PitchDeviationSpec(FlankToleranceSpec):
             got = " and ".join(given) or "none"
             raise refused("law", f"{' and '.join(wanted)} for flanks {self.flanks}", got)
         return self
+
+    @override
+    def in_numbers(self, draw: Any) -> Self:
+        if self.limits is None or self.limits.iso_class is None:
+            return self
+        limits: PitchLimits = draw.limits
+        both = {"single": OF_CLASSES.like(limits.single), "cumulative": OF_CLASSES.like(limits.cumulative)}
+        return self.model_copy(update={"limits": PitchLimitsSpec(**both)})
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
         """See ToleranceEntry: both limits."""
