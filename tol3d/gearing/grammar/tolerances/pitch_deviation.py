@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 from typing_extensions import override
 
-from tol3d.errors import GeometryError, InputError, SceneError
+from tol3d.errors import GeometryError, InputError, Problem, SceneError
 from tol3d.files import Files
 from tol3d.gearing.draws.normal_pitch_draw import NormalPitchDraw
 from tol3d.gearing.draws.pitch_draw import (
@@ -143,11 +143,10 @@ class PitchRecordSpec(RecordSpec):
             if self.deviation == "single":
                 over = math.fsum(index)
                 if abs(over) > teeth * record.grain() / 2:
-                    raise SceneError(
-                        f"{record.table.path}: column {self.column!r}: expected single pitch deviations that sum to "
-                        f"zero{f' over the {side} flanks' if side else ''}, got {1e3 * over:g} um; index deviations "
-                        "are `deviation: index`"
-                    )
+                    flanks = f" over the {side} flanks" if side else ""
+                    words = f"expected single pitch deviations that sum to zero{flanks}, got {1e3 * over:g} um"
+                    words += "; index deviations are `deviation: index`"
+                    raise SceneError(Problem.at(record.table.path, words, path=f"column {self.column!r}"))
                 index = [value - over * (k + 1) / teeth for k, value in enumerate(accumulate(index))]
             mean = math.fsum(index) / teeth
             found[side] = [sense * (index[self.placed(tooth, teeth)] - mean) for tooth in range(teeth)]
@@ -196,8 +195,8 @@ class PitchDeviationSpec(FlankToleranceSpec):
         if self.limits is None or self.limits.iso_class is None:
             return self
         limits: PitchLimits = draw.limits
-        both = {"single": OF_CLASSES.like(limits.single), "cumulative": OF_CLASSES.like(limits.cumulative)}
-        return self.model_copy(update={"limits": PitchLimitsSpec(**both)})
+        single, cumulative = OF_CLASSES.like(limits.single), OF_CLASSES.like(limits.cumulative)
+        return self.model_copy(update={"limits": PitchLimitsSpec(single=single, cumulative=cumulative)})
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
         """See ToleranceEntry: both limits."""
