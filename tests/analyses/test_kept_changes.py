@@ -195,6 +195,42 @@ def test_a_shared_law_is_changed_at_its_tolerance_alone() -> None:
     assert_kept("", Change("t", factor=0.5), scene, own)
 
 
+ANCHORED = """\
+  t: &all
+    kind: tooth_thickness
+    distribution: {kind: normal, lower: &low -30 um, upper: -19 um}
+    of: a
+"""
+WIDER = "    distribution: {kind: normal, lower: %s-31.375 um, upper: -17.625 um}"
+ALL = "{kind: tooth_thickness, distribution: {kind: normal, lower: -30 um, upper: -19 um}, of: a}"
+
+
+@pytest.mark.parametrize(
+    ("lines", "after"),
+    [
+        (
+            "  t:\n    kind: tooth_thickness\n    of: a\n    distribution:\n      # why\n      - -30 um  # low\n"
+            "      - -19 um  # high\n",
+            [["      - -31.375 um  # low", "      - -17.625 um  # high"]],
+        ),
+        (
+            "  t:\n    kind: tooth_thickness\n    distribution:\n      fit: g6\n      of: 32 mm\n    of: a\n",
+            [["    distribution: -0.007/-0.027 mm"]],
+        ),
+        (f"{ANCHORED}  u:\n    <<: *all\n    of: b\n", [["  t:"], [WIDER % "&low "], [f"    <<: &all {ALL}"]]),
+        (
+            f"{ANCHORED}  u: {{kind: tooth_thickness, of: b, distribution: [*low, 1 um]}}\n",
+            [[WIDER % ""], ["  u: {kind: tooth_thickness, of: b, distribution: [&low -30 um, 1 um]}"]],
+        ),
+    ],
+)
+def test_values_on_several_lines_and_shared_ones_change_in_their_place(lines: str, after: list[list[str]]) -> None:
+    text = "".join(lines if "WRITTEN" in line else line for line in PAIR.splitlines(keepends=True))
+    scene = read(text)
+    own = response_of(simulation_of(scene), analytic=True)
+    assert hunks(text, assert_kept("", Change("t", factor=1.25), scene, own).text) == after
+
+
 # of other files, and of none -------------------------------------------------------------------------------------
 
 GEAR = """parts:
@@ -254,6 +290,19 @@ def test_what_the_scene_cannot_say_is_refused() -> None:
         scene_with(response("slider_crank"), load("slider_crank"), [Change("encoder of angle", factor=0.5)])
     with pytest.raises(InputError, match="bearing clearance: expected at least 0 um"):
         scene_with(response("spur_pair"), load("spur_pair"), [Change("bearing clearance", factor=1.2)])
+
+
+@pytest.mark.parametrize("law", ["uniform", "normal"])
+@pytest.mark.parametrize("envelope", ["false", "true"])
+def test_a_form_in_a_fit_begins_at_nothing_however_wide(law: str, envelope: str) -> None:
+    """With an envelope it is what the size leaves of it."""
+    form = f"  form: {{kind: straightness, of: base.pin 1, zone: {{diameter: 4 um}}, law: {{kind: {law}}}}}\n"
+    text = load("hole_and_slot").text.replace("tolerances:\n", f"tolerances:\n{form}", 1)
+    scene = read(f"envelope: {envelope}\n{text}")
+    own = response_of(simulation_of(scene), analytic=True)
+    kept = assert_kept("", Change("form", factor=1.5), scene, own)
+    assert hunks(scene.text, kept.text) == [[form.replace("4 um", "6 um").rstrip()]]
+    assert own.scaled({"form": 1.5}).drawn_by("form").distribution.low == 0.0
 
 
 def test_both_segments_of_a_composite_tolerance_go_together() -> None:

@@ -3,21 +3,26 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
+import numpy as np
+
 from tol3d.analyses.response import Response
 from tol3d.analyses.stated_changes import Change, changed, known, law_of
 from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.scene import Scene
-from tol3d.scene.bases import ToleranceEntry
+from tol3d.scene.bases import ToleranceEntry, ToleranceSpec
 from tol3d.scene.edit import with_tolerances
 from tol3d.scene.splice import flow_text
+from tol3d.statistics.distributions import Distribution
 from tol3d.statistics.distributions.derived import Derived
 from tol3d.study.system.draw import Draw
-from tol3d.study.system.other_laws import Zoned, naturally_stays
+from tol3d.study.system.other_laws import Zoned, naturally_stays, scaled
 from tol3d.study.trials.simulation import Line
 
 CLASSES: Final = ("fit", "general", "iso_1328_2", "iso_class", "grade")
 """Keys by which a scene states limits of a standard."""
+SAME: Final = 1e-9
+"""Share of a tolerance by which limits may differ that are the same: ten digits are written."""
 
 
 def scene_with(response: Response, scene: Scene, changes: Sequence[Change], *, physical: bool = True) -> Scene:
@@ -60,7 +65,20 @@ def _stated(spec: ToleranceEntry, change: Change, draw: Draw, files: Files) -> T
     if change.size is not None and isinstance(draw, Zoned):
         return spec.scaled(change.size / draw.width, "middle", files)
     law = law_of(draw, change)
+    if not isinstance(spec, ToleranceSpec) and (factor := _wider(draw, law)) is not None:
+        return spec.scaled(factor, naturally_stays(draw), files)
     return spec.with_law(law.measured if isinstance(law, Derived) else law)
+
+
+def _wider(draw: Draw, law: Distribution) -> float | None:
+    """The factor by which a law is that of a draw; None where it is another one."""
+    before, after = draw.distribution, law.limits
+    if after is None or not before.low < before.high:
+        return None
+    factor = (after[1] - after[0]) / (before.high - before.low)
+    wider = scaled(draw, factor).distribution
+    same = np.allclose((wider.low, wider.high), after, rtol=0.0, atol=SAME * (after[1] - after[0]))
+    return factor if same else None
 
 
 def _refuse_half(line: Line, changes: Mapping[str, Change], lines: Mapping[str, Line]) -> None:

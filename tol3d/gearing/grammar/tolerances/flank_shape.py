@@ -217,9 +217,7 @@ class FlankShapeSpec(FlankToleranceSpec):
     @override
     def with_law(self, law: Distribution) -> Self:
         if not isinstance(self.law, StatedShapeSpec):
-            if self.limits is None or self.limits.size is None or law.low != -law.high:
-                return super().with_law(law)
-            return self.model_copy(update={"limits": ShapeLimitsSpec(size=self.limits.size.like(law.high))})
+            return super().with_law(law)
         stated = self.law.model_copy(update={"distribution": restated(self.law.distribution, law)})
         return self.model_copy(update={"law": stated})
 
