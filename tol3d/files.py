@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from tol3d.errors import SceneError
+from tol3d.errors import Problem, SceneError
 
 LARGEST_FILE = 20_000_000  # bytes; about two million values, seconds to parse
 NO_WAIT = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)  # which Windows lacks, and which it needs
@@ -46,13 +46,14 @@ def read_file(path: Path) -> FileContent:
     """
     try:
         if not path.is_file():
-            raise SceneError(f"{path}: expected a file, got {'a folder' if path.is_dir() else 'no such file'}")
+            got = "a folder" if path.is_dir() else "no such file"
+            raise SceneError(Problem.at(path, f"expected a file, got {got}"))
         with path.open("rb") as stream:
             content = stream.read(LARGEST_FILE + 1)
     except OSError as error:
-        raise SceneError(f"{path}: expected a file that can be read, got: {error.strerror}") from None
+        raise SceneError(Problem.at(path, f"expected a file that can be read, got: {error.strerror}")) from None
     if len(content) > LARGEST_FILE:
-        raise SceneError(f"{path}: expected at most {LARGEST_FILE // 10**6} MB")
+        raise SceneError(Problem.at(path, f"expected at most {LARGEST_FILE // 10**6} MB"))
     return FileContent(path, content)
 
 

@@ -89,6 +89,7 @@ from typing import Any
 from tol3d.kinds import NEEDED_KINDS
 from tol3d.report.displayed_run import DisplayedRun
 from tol3d.scene import Grammar, Scene, read_scene, scene_from_python
+from tol3d.scene.load import scene_of_text
 from tol3d.study.execution.folding import Plan, StudyOutcome, run_blocks
 from tol3d.study.execution.pools import ONE_WORKER, Execution, pool_of
 from tol3d.study.execution.timing import Clock
@@ -313,6 +314,21 @@ def load(
     return read_scene(scene, grammar, trust_parts=trust_parts, run_builders=run_builders, examine=before_programs)
 
 
+def load_text(text: str, source: Path, *, trust_parts: bool = False, run_builders: bool = False) -> Scene:
+    """A scene of a text that lies in no file yet.
+
+    Args:
+        text: as its file would have it.
+        source: the path of that file, for messages and for files that the scene names.
+        trust_parts, run_builders: see run_scene.
+
+    Raises:
+        SceneError: as of a scene that is read from a file.
+    """
+    content = text.encode("utf-8", "surrogatepass")  # half of a pair is refused with its line
+    return scene_of_text(source, content, NEEDED_KINDS, trust_parts=trust_parts, run_builders=run_builders)
+
+
 def folder_for(scene: Scene, simulation: Simulation, execution: Execution, runs: Path) -> tuple[Path, str]:
     """Default folder of a scene's run, and the contents of the folder of the scene's name if it is another one.
 
@@ -332,6 +348,7 @@ __all__ = [
     "Watch",
     "folder_for",
     "load",
+    "load_text",
     "replay",
     "replayed",
     "run_scene",

@@ -140,14 +140,14 @@ def test_another_default_law_reads_the_limits_anew(tmp_path: Path) -> None:
         scene.model_copy(update={"default_law": None})
 
 
-def test_changed_limits_are_written_anew(tmp_path: Path) -> None:
+def test_changed_limits_are_written_as_limits(tmp_path: Path) -> None:
     scene = scene_with(tmp_path, "±0.1 mm")
     changed = scene.with_({"tolerances.t.distribution": {"fit": "g6", "of": "32 mm"}})
     assert (law_of(changed).low, law_of(changed).high) == pytest.approx((-0.025, -0.009))
     entry = scene.tolerances["t"]
     assert isinstance(entry, ToleranceSpec)
     wider = entry.scaled(2.0, "middle", {})
-    assert wider.distribution.drawn is None
+    assert wider.distribution.drawn == "±0.2 mm"
     assert isinstance(wider.distribution, NormalSpec)
     assert str(wider.distribution.upper) == "0.2 mm"
 

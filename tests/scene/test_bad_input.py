@@ -17,7 +17,7 @@ from ruamel.yaml import YAML
 from thinned import thinned
 
 from tol3d import Scene, load_scene
-from tol3d.errors import SceneError
+from tol3d.errors import Problem, SceneError
 from tol3d.gearing.model import model_from_scene
 from tol3d.scene.problems import MOST_PROBLEMS
 from tol3d.scene.text import MAX_BYTES, MAX_DEPTH
@@ -31,7 +31,7 @@ JARGON = re.compile(
 )
 
 
-def problems(path: Path) -> tuple[str, ...]:
+def problems(path: Path) -> tuple[Problem, ...]:
     """Messages on a scene, checked for what holds of every message."""
     with pytest.raises(SceneError) as caught:
         load_scene(path)
@@ -40,6 +40,8 @@ def problems(path: Path) -> tuple[str, ...]:
     for problem in said:
         assert problem.startswith(f"{path}:") or problem.startswith("… and ")
         assert problem.isprintable()
+        assert problem == Problem.at(problem.file, problem.sentence, line=problem.line, path=problem.path)
+        assert problem.expected or " got " not in problem.sentence
         assert len(problem) < len(str(path)) + 600
         ours = re.sub("'.*'|\".*\"", "", problem[problem.find("expected ") :])  # without the place and what was written
         assert not JARGON.search(ours)

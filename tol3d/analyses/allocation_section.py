@@ -8,15 +8,14 @@ from typing import Annotated
 
 from pydantic import Field
 
+from tol3d.analyses.kept_changes import scene_with
 from tol3d.analyses.response import Response
+from tol3d.analyses.stated_changes import Change
 from tol3d.errors import InputError
 from tol3d.scene import Scene
-from tol3d.scene.bases import ToleranceEntry
-from tol3d.scene.edit import with_tolerances
 from tol3d.statistics.distributions.base import Stays
 from tol3d.study.runs.summary.shows import Shows
 from tol3d.study.runs.summary.values import Count, Known, Label, NotNegative, Number, Ppm, PpmRange, Section, Sentence
-from tol3d.study.system.other_laws import naturally_stays
 from tol3d.study.trials.simulation import Line
 
 
@@ -95,17 +94,14 @@ def allocated_scene(scene: Scene, response: Response, found: Allocation, stays: 
     Raises:
         InputError: one whose width the scene states in no numbers.
     """
-    tolerances = _tolerances(response)
-    changed: dict[str, ToleranceEntry] = {}
-    for name, own in found.tolerances.items():
-        if own.factor == 1.0:
-            continue
-        if not tolerances[name].entries:
-            raise InputError(f"{name}: expected a tolerance of the scene, got what a move says; --freeze it")
-        at = stays.get(name) or naturally_stays(response.drawn_by(tolerances[name].contributors[0]))
-        for entry in tolerances[name].entries:
-            try:
-                changed[entry] = scene.tolerances[entry].scaled(own.factor, at, scene.files)
-            except InputError as error:
-                raise InputError(f"{entry}: {error}; --freeze it, or leave --out") from None
-    return with_tolerances(scene, changed)
+    groups = groups_of(response)
+    changes = [
+        Change(line, factor=own.factor, stays=stays.get(name))
+        for name, own in found.tolerances.items()
+        for line, contributors in response.lines.items()
+        if own.factor != 1.0 and contributors[0] in groups[name]
+    ]
+    try:
+        return scene_with(response, scene, changes, physical=False)
+    except InputError as error:
+        raise InputError(f"{error}; --freeze it, or leave --out") from None

@@ -18,6 +18,7 @@ from tol3d.analyses.before_after import WhatIf
 from tol3d.analyses.before_after import what_if as found_before_after
 from tol3d.analyses.changes_of_run import not_ok
 from tol3d.analyses.costs import Costs, costs_from
+from tol3d.analyses.kept_changes import in_numbers, scene_with
 from tol3d.analyses.kept_pages import charts_of, page_of
 from tol3d.analyses.methods_section import Methods
 from tol3d.analyses.rare_events import Method, RareEvent, limits_left
@@ -118,24 +119,32 @@ class RareAnswer(Answer[RareEvents]):
 
 
 @dataclass(frozen=True, repr=False)
-class AllocationAnswer(Answer[Allocation]):
-    """Tolerances of least cost.
+class OtherTolerances(Answer[Found]):
+    """Findings on other tolerances.
 
     Args:
-        write: makes the scene with them.
+        before: the scene with its own tolerances.
+        write: makes the scene with the other ones.
     """
 
+    before: Callable[[], Scene] | None = None
     write: Callable[[], Scene] | None = None
 
     @cached_property
     def scene(self) -> Scene:
-        """The scene with the allocated tolerances.
+        """The scene with the other tolerances.
 
         Raises:
             InputError: one whose width the scene states in no numbers.
         """
         assert self.write is not None
         return self.write()
+
+    @property
+    def in_numbers(self) -> Mapping[str, str]:
+        """Words on limits of a standard that are numbers in `scene`, by tolerance."""
+        assert self.before is not None
+        return in_numbers(self.before(), self.scene)
 
 
 @dataclass(frozen=True, repr=False)
@@ -226,7 +235,7 @@ def what_if(
     warn: Activity = silent,
     trust_parts: bool = False,
     run_builders: bool = False,
-) -> Answer[WhatIf]:
+) -> OtherTolerances[WhatIf]:
     """Effect of other tolerances, as `tol3d what-if` finds it.
 
     Args:
@@ -254,7 +263,12 @@ def what_if(
         trials, draws = (0, 0) if quick else (trials, draws)
         found = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=tell)
     numbers = {name: what_if_table(each) for name, each in found.measures.items()}
-    return Answer(*_kept(own, "what-if", found, lambda page: numbers), warnings)
+
+    def write() -> Scene:
+        return scene_with(response, own.scene, changes)
+
+    kept = _kept(own, "what-if", found, lambda page: numbers)
+    return OtherTolerances(*kept, warnings, before=lambda: own.scene, write=write)
 
 
 def effects(
@@ -404,7 +418,7 @@ def allocate(
     activity: Activity = silent,
     trust_parts: bool = False,
     run_builders: bool = False,
-) -> AllocationAnswer:
+) -> OtherTolerances[Allocation]:
     """Tolerances of least cost for a fraction out of limits, as `tol3d allocate` finds them.
 
     Args:
@@ -442,7 +456,7 @@ def allocate(
     def write() -> Scene:
         return allocated_scene(own.scene, response, found, question.stays)
 
-    return AllocationAnswer(*_kept(own, "allocation", found, _first_table), write=write)
+    return OtherTolerances(*_kept(own, "allocation", found, _first_table), before=lambda: own.scene, write=write)
 
 
 def sweep(

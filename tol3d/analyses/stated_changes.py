@@ -9,6 +9,7 @@ from tol3d.analyses.response import Response
 from tol3d.errors import InputError
 from tol3d.scene.nearest import hint
 from tol3d.statistics.distributions import Distribution
+from tol3d.statistics.distributions.base import Stays
 from tol3d.statistics.distributions.drawn import limits_written
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.draw import Draw, component_sigmas
@@ -28,12 +29,14 @@ class Change:
         limits: new limits of their draw [mm, rad or K].
         size: new size of its zone, or of a law stated by one number.
         factor: on its width.
+        stays: which limit does, where it is scaled; default: see study/system/other_laws.py, `naturally_stays`.
     """
 
     name: str
     limits: tuple[float, float] | None = None
     size: float | None = None
     factor: float | None = None
+    stays: Stays | None = None
 
 
 def change_of(response: Response, text: str) -> Change:
@@ -74,8 +77,13 @@ def factor_of(response: Response, text: str, option: str = "--factor") -> Change
     return Change(name, factor=factor)
 
 
-def changed(response: Response, changes: Sequence[Change]) -> Response:
+def changed(response: Response, changes: Sequence[Change], *, physical: bool = True) -> Response:
     """The same system with other tolerances.
+
+    Args:
+        response: with the tolerances of the scene.
+        changes: one per line of the scene.
+        physical: see Response.scaled.
 
     Raises:
         InputError: one that cannot be, by the name of its line; two of one line.
@@ -85,6 +93,7 @@ def changed(response: Response, changes: Sequence[Change]) -> Response:
         if names.count(name) > 1:
             raise InputError(f"{name}: expected one change of it, got {names.count(name)}")
     factors: dict[str, float] = {}
+    stays: dict[str, Stays] = {}
     laws: dict[str, Distribution] = {}
     widths: dict[str, float] = {}
     for change in changes:
@@ -92,11 +101,12 @@ def changed(response: Response, changes: Sequence[Change]) -> Response:
             draw = response.drawn_by(name)
             if change.factor is not None:
                 factors[name] = change.factor
+                stays |= {} if change.stays is None else {name: change.stays}
             elif change.size is not None and isinstance(draw, Zoned):
                 widths[name] = change.size
             else:
-                laws[name] = _law(draw, change)
-    return response.scaled(factors).sized(widths).with_laws(laws)
+                laws[name] = law_of(draw, change)
+    return response.scaled(factors, stays, physical=physical).sized(widths).with_laws(laws)
 
 
 MANY_TIMES: Final = 100.0
@@ -112,7 +122,12 @@ def slips(before: Response, after: Response) -> Iterator[str]:
             yield f"{contributor.name}: {told(contributor, after.draws[contributor.name])} is {times}; check the unit"
 
 
-def _law(draw: Draw, change: Change) -> Distribution:
+def law_of(draw: Draw, change: Change) -> Distribution:
+    """The law of a draw within other limits, or of another size.
+
+    Raises:
+        InputError: it has no such law; by the name of the change.
+    """
     law = draw.distribution
     if isinstance(draw, Zoned):
         raise InputError(f"{change.name}: expected the width of its zone, such as 10 um, got limits")

@@ -11,13 +11,16 @@ The command on tolerances of least cost.
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, answer
 from tol3d.cli.arguments import AcceptOption, AcceptPpkOption, RunBuilders, TrustParts, accepted_of, whole
 from tol3d.cli.console import tell, warn
+
+if TYPE_CHECKING:
+    from tol3d.analyses.answers import OtherTolerances
 
 
 def what_if(
@@ -38,6 +41,7 @@ def what_if(
     ] = 4800,
     quick: Annotated[bool, typer.Option("--quick", help="Rates and first order alone, without a simulation.")] = False,
     seed: Annotated[Any, typer.Option(parser=whole(0), metavar="N", help="Of importance sampling.")] = 1,
+    out: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the scene with them here.")] = None,
     csv: CsvOption = None,
     picture: PictureOption = None,
     trust_parts: TrustParts = False,
@@ -50,7 +54,9 @@ def what_if(
     own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
     words: dict[str, Any] = {"measure": measure, "trials": trials, "draws": draws, "quick": quick, "seed": seed}
     words |= {"set": changed or (), "factor": factor or (), "warn": warn}
-    answer("what-if", own, "what if", lambda activity: ask(own, **words, activity=activity), csv, picture)
+    found = answer("what-if", own, "what if", lambda activity: ask(own, **words, activity=activity), csv, picture)
+    if out is not None:
+        _write(found, out)
 
 
 def changes(
@@ -178,7 +184,6 @@ def allocate(
     """Find the tolerances of least cost for a share out of limits, which simulation confirms."""
     from tol3d.analyses import allocate as ask
     from tol3d.analyses.subject import subject_of
-    from tol3d.scene.edit import write_scene
 
     own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
     words: dict[str, Any] = {"ppm": ppm, "ppk": ppk, "measure": measure or (), "cost": cost, "bounds": bounds}
@@ -186,5 +191,14 @@ def allocate(
     words |= {"draws": draws, "seed": seed}
     found = answer("allocation", own, "tolerances", lambda activity: ask(own, **words, activity=activity), csv, picture)
     if out is not None:
-        write_scene(found.scene, out)
-        tell(f"scene: {out}")
+        _write(found, out)
+
+
+def _write(found: "OtherTolerances[Any]", out: Path) -> None:
+    """Write the scene with other tolerances, and tell which limits of a standard are numbers there."""
+    from tol3d.scene.edit import write_scene
+
+    write_scene(found.scene, out)
+    tell(f"scene: {out}")
+    for name, words in found.in_numbers.items():
+        tell(f"{name}: {words}")

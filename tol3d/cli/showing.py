@@ -17,7 +17,7 @@ from tol3d.cli.arguments import (
     scene_path,
     whole,
 )
-from tol3d.cli.console import err_console, out_console, seconds, tell
+from tol3d.cli.console import WRONG_INPUT, err_console, out_console, seconds, tell
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,6 +43,9 @@ def check(
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write all tables whole, as comma-separated values.")
     ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print its errors and warnings instead, as JSON for programs.")
+    ] = False,
     trust_parts: TrustParts = False,
     run_builders: RunBuilders = False,
 ) -> None:
@@ -58,6 +61,11 @@ def check(
 
     if parts and out is not None:
         raise InputError("--out: of --parts leave it out; the tree is no table")
+    if as_json:
+        if parts or out is not None:
+            raise InputError(f"{'--parts' if parts else '--out'}: of --json leave it out, which prints no tables")
+        _print_problems(scene, trust_parts=trust_parts, run_builders=run_builders)
+        return
     loaded = load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
     spent = {"to read the scene": seconds()}
     simulation = simulation_of(loaded)
@@ -74,6 +82,23 @@ def check(
     spent["to print it"] = seconds() - sum(spent.values())
     if sum(spent.values()) > LONG:
         tell(f"time: {sum(spent.values()):.1f} s in all: {', '.join(f'{s:.1f} s {word}' for word, s in spent.items())}")
+
+
+def _print_problems(scene: str, *, trust_parts: bool, run_builders: bool) -> None:
+    """Print errors of a scene, or else its warnings, as JSON; with errors the exit code is that of wrong input."""
+    import json
+
+    from tol3d.errors import InputError, Problem
+    from tol3d.simulate import load, simulation_of
+
+    try:
+        simulation = simulation_of(load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders))
+        found = [Problem.of(own).data("warning") for own in simulation.warnings]
+    except InputError as error:
+        found = [own.data() for own in error.problems]
+    typer.echo(json.dumps(found, indent=2, ensure_ascii=False))
+    if any(own["severity"] == "error" for own in found):
+        raise typer.Exit(WRONG_INPUT)
 
 
 def workspace(

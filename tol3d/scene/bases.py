@@ -19,8 +19,9 @@ from tol3d.files import Files
 from tol3d.scene.entry import AboutOne, Entry, Reference
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
-from tol3d.statistics.distributions import DistributionSpec, StatedDistribution
+from tol3d.statistics.distributions import Distribution, DistributionSpec, StatedDistribution
 from tol3d.statistics.distributions.base import Stays
+from tol3d.statistics.distributions.drawn import restated
 from tol3d.strict import Strict, refused
 from tol3d.units import Dimension, Of, Positive, Quantity, refuse_dimension
 
@@ -117,7 +118,7 @@ def scaled_law(spec: DistributionSpec, factor: float, stays: Stays, files: Files
     Raises:
         InputError: it cannot be scaled, or no numbers state it.
     """
-    return spec.stating(spec.resolve(files).scaled_at(factor, stays))
+    return restated(spec, spec.resolve(files).scaled_at(factor, stays))
 
 
 def laws_in(value: Any) -> Iterator[DistributionSpec]:
@@ -161,6 +162,22 @@ class ToleranceEntry(Entry):
         """
         raise InputError("expected a tolerance whose width the scene states in numbers")
 
+    def with_law(self, law: Distribution) -> Self:
+        """The tolerance as a scene writes it, by another law of its kind [mm, rad or K].
+
+        Raises:
+            InputError: the scene states no law of it, or none by numbers.
+        """
+        raise InputError("expected a tolerance whose law the scene states; change its width by a factor")
+
+    def in_numbers(self, draw: Any) -> Self:
+        """The tolerance with limits in numbers where the scene states a class of limits.
+
+        Args:
+            draw: how its deviations are drawn, see study/system/draw.py.
+        """
+        return self
+
 
 class ToleranceSpec(ToleranceEntry):
     """A tolerance that is a contributor: one deviation and its distribution."""
@@ -179,6 +196,10 @@ class ToleranceSpec(ToleranceEntry):
     @override
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
         return self.model_copy(update={"distribution": scaled_law(self.distribution, factor, stays, files)})
+
+    @override
+    def with_law(self, law: Distribution) -> Self:
+        return self.model_copy(update={"distribution": restated(self.distribution, law)})
 
     @model_validator(mode="after")
     def _refuse_other_dimensions(self) -> Self:

@@ -6,7 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
-from tol3d.errors import SceneError
+from tol3d.errors import Problem, SceneError
 from tol3d.scene.name import LONGEST_NAME
 from tol3d.scene.nearest import nearest
 
@@ -32,4 +32,4 @@ def scene_path(scene: Path | str) -> Path:
     if text in scenes or os.path.exists(path):
         return scenes.get(text, path)
     listed = nearest(text, scenes) or f" (bundled scenes: {', '.join(scenes)})"
-    raise SceneError(f"{text[:LONGEST_NAME]}: no such file, and no scene of that name{listed}")
+    raise SceneError(Problem.at(text[:LONGEST_NAME], f"no such file, and no scene of that name{listed}"))

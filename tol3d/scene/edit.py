@@ -1,6 +1,6 @@
 """A scene's file with other tolerances in it: the rest stays as it was written, comments too."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,8 +9,10 @@ from tol3d.errors import InputError, unwritable
 from tol3d.scene.bases import ToleranceEntry
 from tol3d.scene.including import INCLUDE
 from tol3d.scene.load import read_scene
+from tol3d.scene.place import KeyPath
 from tol3d.scene.schema import Scene
 from tol3d.scene.splice import INDENT, flow_text, spliced, written_values
+from tol3d.units import MICRO_SIGNS, NUMBER_UNIT
 
 Tolerances = Mapping[str, ToleranceEntry]
 
@@ -44,7 +46,8 @@ def write_scene(scene: Scene, path: Path) -> None:
         raise InputError(f"{path}: expected the name of a new file, there is one already") from None
     except OSError as error:
         raise unwritable(path, error, "choose another file") from None
-    if read_scene(path, scene.grammar, files=scene.files).model_dump() != scene.model_dump():
+    read = read_scene(path, scene.grammar, files=scene.files)
+    if read.model_dump(warnings=False) != scene.model_dump(warnings=False):  # picked features are of no kind there
         path.unlink()
         raise InputError(f"{path}: {scene.source} is written in a way that cannot be edited; paste the lines instead")
 
@@ -57,16 +60,45 @@ def _edited(scene: Scene, changed: Tolerances) -> str:
     text = scene.text
     for name, spec in changed.items():
         own, plain = written_values(text), _plain(spec)
-        if name not in (own.get("tolerances") or {}):
-            if name in scene.tolerances:
+        written = (own.get("tolerances") or {}).get(name)
+        if written is None:
+            if name in scene.tolerances and name not in scene.origin.general:
                 text = without(text, own[INCLUDE], name)
             text = spliced(text, ("tolerances", name), plain)
             continue
         before = _plain(scene.tolerances[name])
-        for key, value in plain.items():
-            if before.get(key) != value:
-                text = spliced(text, ("tolerances", name, key), value)
+        for path, value in _differences(before, {**before, **plain}, written):
+            text = spliced(text, ("tolerances", name, *path), value)
     return text
+
+
+def _differences(before: Any, after: Any, written: Any) -> Iterator[tuple[KeyPath, Any]]:
+    """Places that differ, with their new values: where their text has such places, single numbers and words.
+
+    Args:
+        before, after: a value of the scene.
+        written: its text's.
+    """
+    match before, after, written:
+        case dict(), dict(), dict() if before.keys() <= after.keys():
+            keys: Iterable[str | int] = after
+        case list(), list(), list() if len(before) == len(after) == len(written):
+            keys = range(len(after))
+        case _:
+            if before != after:
+                yield (), _as_spelt(after, written)
+            return
+    for key in keys:
+        own = (each.get(key) if isinstance(each, dict) else each[key] for each in (before, after, written))
+        yield from (((key, *path), value) for path, value in _differences(*own))
+
+
+def _as_spelt(value: Any, written: Any) -> Any:
+    """A quantity with the unit as it is spelt in the text that it replaces; any other value as it is."""
+    new, old = (NUMBER_UNIT.fullmatch(own) if isinstance(own, str) else None for own in (value, written))
+    if new and old and old[2].translate(MICRO_SIGNS) == new[2]:
+        return f"{written[: old.start(1)]}{new[1]}{written[old.end(1) :]}"
+    return value
 
 
 def without(text: str, includes: Mapping[str, Any], name: str) -> str:

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Final, Protocol, Union
 
 from pydantic import Field, ValidationError, create_model
 
-from tol3d.errors import InputError
+from tol3d.errors import InputError, Problem
 from tol3d.import_path import REGISTRY
 from tol3d.scene.bases import MeasureEntry, MoveSpec, PartSpec, ToleranceEntry, laws_in
 from tol3d.scene.entry import Entry, kind_of
@@ -207,7 +207,7 @@ class Grammar:
         """The class of files that scenes include: no section must be there, and no name."""
         return _scene_class(self, required=frozenset())
 
-    def messages(self, error: ValidationError, data: Any, origin: Origin) -> list[str]:
+    def messages(self, error: ValidationError, data: Any, origin: Origin) -> list[Problem]:
         """Errors of pydantic in the plain values of a scene, in the user's words, each with its place."""
         return messages(error, data, origin, self)
 
@@ -221,11 +221,11 @@ class Grammar:
             for check in vocabulary.checks:
                 yield from check(scene)
 
-    def warnings(self, scene: Scene) -> Iterator[str]:
+    def warnings(self, scene: Scene) -> Iterator[Problem]:
         """Warnings of the vocabularies, each with its place; the files of the scene are read, its solids known."""
         for vocabulary in self.vocabularies:
             for check in vocabulary.warnings:
-                yield from (warned(path, sentence) for path, sentence in check(scene))
+                yield from (warned(scene.origin, path, sentence) for path, sentence in check(scene))
 
     def general(self, scene: Scene) -> dict[str, Mapping[str, Any]]:
         """Tolerances that dimensions take from the general ones of a scene, by names that it does not have."""

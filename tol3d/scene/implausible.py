@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import Final
 
-from tol3d.scene.place import KeyPath, path_text, printable
+from tol3d.errors import Problem
+from tol3d.scene.place import KeyPath, Origin, path_text, printable
 from tol3d.statistics.distributions import Distribution
 from tol3d.units import Quantity
 
@@ -61,6 +62,8 @@ def larger_end(law: Distribution) -> float:
     return max(law.extremes, key=abs)
 
 
-def warned(path: KeyPath, sentence: str) -> str:
-    """The line of a warning: place in the scene, sentence."""
-    return f"{path_text(path)}: {printable(sentence)}"
+def warned(origin: Origin, path: KeyPath, sentence: str) -> Problem:
+    """The line of a warning: place in the scene, sentence; its parts know file and line too."""
+    (line, column, file), told = origin.place(path), printable(sentence)
+    at = path_text(path)
+    return Problem(f"{at}: {told}", str(file or origin.source), line, column, at, told)

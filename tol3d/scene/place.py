@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tol3d.errors import SceneError
+from tol3d.errors import Problem, SceneError
 from tol3d.files import Files
 
 LONGEST_KEY = 80  # characters shown; names may be that long
@@ -57,11 +57,10 @@ class Origin:
                 return self.places[path[:length]]
         return Place(1, 1)
 
-    def message(self, path: KeyPath, sentence: str, place: Place | None = None) -> str:
+    def message(self, path: KeyPath, sentence: str, place: Place | None = None) -> Problem:
         """`file:line: place: sentence`, on one line."""
-        line, _, file = place or self.place(path)
-        words = (f"{file or self.source}:{line}", path_text(path), printable(sentence))
-        return ": ".join(part for part in words if part)
+        line, column, file = place or self.place(path)
+        return Problem.at(file or self.source, printable(sentence), line=line, column=column, path=path_text(path))
 
     def order(self, path: KeyPath) -> tuple[str, int]:
         """Sort key of messages of key paths: those of the scene's own file first, by its lines."""

@@ -8,6 +8,7 @@ from typing import Any, Final, Protocol
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from tol3d.errors import Problem
 from tol3d.scene.bases import ToleranceSpec
 from tol3d.scene.entry import Entry
 from tol3d.scene.nearest import LISTED_WORDS, LONGEST_WORD, hint, nearest
@@ -58,7 +59,7 @@ class Words(Protocol):
         ...
 
 
-def messages(error: ValidationError, data: Any, origin: Origin, grammar: Words) -> list[str]:
+def messages(error: ValidationError, data: Any, origin: Origin, grammar: Words) -> list[Problem]:
     """One message for each problem, in the order of the file, at most MOST_PROBLEMS of them.
 
     Args:
@@ -67,7 +68,7 @@ def messages(error: ValidationError, data: Any, origin: Origin, grammar: Words) 
         origin: their place.
         grammar: the kinds that they may be of.
     """
-    found: dict[str, tuple[str, int]] = {}
+    found: dict[Problem, tuple[str, int]] = {}
     for details in error.errors(include_url=False):
         path = _path(details["loc"], data)
         sentence = problem_sentence(details, _dimensions(path, data, grammar))
@@ -84,10 +85,10 @@ def messages(error: ValidationError, data: Any, origin: Origin, grammar: Words) 
     return first_few(ordered)
 
 
-def first_few(problems: list[str]) -> list[str]:
+def first_few(problems: list[Problem]) -> list[Problem]:
     """The problems that are worth showing at once."""
     left = len(problems) - MOST_PROBLEMS
-    return problems if left <= 0 else [*problems[:MOST_PROBLEMS], f"… and {left} more"]
+    return problems if left <= 0 else [*problems[:MOST_PROBLEMS], Problem(f"… and {left} more")]
 
 
 def _path(loc: tuple[int | str, ...], data: Any) -> KeyPath:

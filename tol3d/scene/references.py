@@ -15,10 +15,11 @@ from tol3d.scene.published.whole import PublishedWhole
 from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.units import expectation, shown
 
-Problem = tuple[KeyPath, str]
+Refusal = tuple[KeyPath, str]
+"""Place of what cannot be, and the sentence that says why."""
 
 
-def refuse(scene: Scene, problems: list[Problem]) -> None:
+def refuse(scene: Scene, problems: list[Refusal]) -> None:
     """Raise if there are problems.
 
     Raises:
@@ -26,10 +27,10 @@ def refuse(scene: Scene, problems: list[Problem]) -> None:
     """
     if problems:
         ordered = sorted(problems, key=lambda problem: scene.origin.order(problem[0]))
-        raise SceneError(*first_few([str(scene.refuse(path, sentence)) for path, sentence in ordered]))
+        raise SceneError(*first_few([scene.origin.message(path, sentence) for path, sentence in ordered]))
 
 
-def loose_ends(scene: Scene) -> list[Problem]:
+def loose_ends(scene: Scene) -> list[Refusal]:
     """Inconsistencies in a scene that is right field by field: names first, then their meaning."""
     problems = bad_names(scene)
     if not problems:
@@ -39,12 +40,12 @@ def loose_ends(scene: Scene) -> list[Problem]:
     return [*problems, *_unpublished(scene), *_unstoppable(scene)]
 
 
-def bad_names(scene: Scene) -> list[Problem]:
+def bad_names(scene: Scene) -> list[Refusal]:
     """Names that stand twice; if there are none, those that entries use and that are not there."""
     return list(_repeated(scene)) or list(_unknown(scene))
 
 
-def unreadable_files(scene: Scene, trust_parts: bool) -> list[Problem]:
+def unreadable_files(scene: Scene, trust_parts: bool) -> list[Refusal]:
     """Files of a scene that are not there, or lie outside its folder without being trusted."""
     return [
         ((*path, *field), sentence)
@@ -54,7 +55,7 @@ def unreadable_files(scene: Scene, trust_parts: bool) -> list[Problem]:
     ]
 
 
-def _repeated(scene: Scene) -> Iterator[Problem]:
+def _repeated(scene: Scene) -> Iterator[Refusal]:
     first: dict[str, KeyPath] = {}
     for section in SECTIONS:
         for name in scene.section(section):
@@ -72,7 +73,7 @@ def _references(scene: Scene) -> Iterator[tuple[KeyPath, Reference]]:
             yield (*path, *reference.path), reference
 
 
-def _unknown(scene: Scene) -> Iterator[Problem]:
+def _unknown(scene: Scene) -> Iterator[Refusal]:
     entries = scene.of(Entry)
     unusable: dict[type[Reference], Mapping[str, Unusable]] = {}
     for path, reference in _references(scene):
@@ -101,7 +102,7 @@ def _found(scene: Scene, name: str) -> str:
     return f"is {words}" if words else f"stands in {section}"
 
 
-def _contradicted(scene: Scene) -> Iterator[tuple[Problem, bool]]:
+def _contradicted(scene: Scene) -> Iterator[tuple[Refusal, bool]]:
     """Conflicts between entries, each with whether more may follow from it."""
     for (section, name), entry in scene.entries().items():
         for it in entry.contradictions(scene.parts, scene.moves):
@@ -109,7 +110,7 @@ def _contradicted(scene: Scene) -> Iterator[tuple[Problem, bool]]:
             yield ((section, name, *it.path), f"expected {it.expected}, got {it.got}{near}"), it.leads
 
 
-def _unpublished(scene: Scene) -> Iterator[Problem]:
+def _unpublished(scene: Scene) -> Iterator[Refusal]:
     """Measures and contributors of published columns that the scene does not have."""
     for column, measures in scene.published.items():
         for name, values in measures.items():
@@ -138,7 +139,7 @@ def _unpublished(scene: Scene) -> Iterator[Problem]:
                 yield ("published", column, *place), sentence
 
 
-def _unstoppable(scene: Scene) -> Iterator[Problem]:
+def _unstoppable(scene: Scene) -> Iterator[Refusal]:
     """Conditions of an automatic study that no measure of the scene will reach."""
     for name, errors in scene.study.until.items():
         path: KeyPath = ("study", "until", name)

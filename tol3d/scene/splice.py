@@ -117,8 +117,9 @@ def _put(text: str, before: Any, meant: Any, path: KeyPath) -> str:
         if child.anchor:
             shared.append(child)
         piece, old = child, known
-    if shared and (moved := _unshared(text, shared[0])) is not None:
-        return _put(moved, before, meant, path)
+    for own in shared:
+        if (moved := _unshared(text, own)) is not None:
+            return _put(moved, before, meant, path)
     if isinstance(old, dict) and isinstance(new, dict) and list(old) == list(new)[: len(old)] and old:
         for key in new:
             if key not in old or old[key] != new[key]:
@@ -186,7 +187,9 @@ def _unshared(text: str, piece: _Piece, beyond: int = 0) -> str | None:
         return None
     old, first = _node_text(text, piece), uses[0]
     moved = f"{text[: first.start]}&{piece.anchor} {old}{text[first.end :]}"
-    return moved[: piece.before] + moved[piece.start :]
+    lines = moved[piece.before : piece.start].removeprefix(f"&{piece.anchor}").lstrip(" ")  # to a value below its key
+    before = moved[: piece.before]
+    return (before.rstrip(" ") if lines else before) + lines + moved[piece.start :]
 
 
 def _node_text(text: str, piece: _Piece) -> str:

@@ -18,7 +18,7 @@ from typing import Any, Final, NoReturn
 import yaml
 from yaml.reader import ReaderError
 
-from tol3d.errors import SceneError
+from tol3d.errors import Problem, SceneError
 from tol3d.scene.place import Key, KeyPath, Node, Origin, Place, Places, branch, plain
 from tol3d.units import shown
 
@@ -103,19 +103,21 @@ def values_in(path: Path, content: bytes) -> Any:
 
 def _content(path: Path) -> bytes:
     if os.path.isdir(path):
-        raise SceneError(f"{path}: expected a scene file, got a folder{_scene_inside(path)}")
+        raise SceneError(Problem.at(path, f"expected a scene file, got a folder{_scene_inside(path)}"))
     if os.path.exists(path) and not os.path.isfile(path):  # a pipe would be waited for, a device may never end
-        raise SceneError(f"{path}: expected a scene file, got a pipe or a device")
+        raise SceneError(Problem.at(path, "expected a scene file, got a pipe or a device"))
     try:
         with path.open("rb") as stream:
             content = stream.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise SceneError(f"{path}: expected a scene file, found no file of that name{near_file(path)}") from None
+        words = f"expected a scene file, found no file of that name{near_file(path)}"
+        raise SceneError(Problem.at(path, words)) from None
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         reason = getattr(error, "strerror", None) or error
-        raise SceneError(f"{path}: expected a scene file that can be read, got: {reason}") from None
+        raise SceneError(Problem.at(path, f"expected a scene file that can be read, got: {reason}")) from None
     if len(content) > MAX_BYTES:
-        raise SceneError(f"{path}:1: expected a scene of at most {MAX_BYTES // 10**6} MB, got a larger file")
+        words = f"expected a scene of at most {MAX_BYTES // 10**6} MB, got a larger file"
+        raise SceneError(Problem.at(path, words, line=1))
     return content
 
 
@@ -124,9 +126,8 @@ def _decoded(path: Path, content: bytes) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
-        raise SceneError(
-            f"{path}:{line}: expected UTF-8 text, got the byte 0x{content[error.start]:02x}, which is none"
-        ) from None
+        words = f"expected UTF-8 text, got the byte 0x{content[error.start]:02x}, which is none"
+        raise SceneError(Problem.at(path, words, line=line)) from None
 
 
 def _scene_inside(folder: Path) -> str:

@@ -14,7 +14,7 @@ from tol3d.assembly.grammar.forms import whole_form
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec, is_of_round_surface
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
-from tol3d.assembly.zones import EnvelopedForm
+from tol3d.assembly.zones import EnvelopedForm, FittedForm
 from tol3d.import_path import named
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -159,7 +159,7 @@ class _Tolerances:
             raise self.scene.refuse(("tolerances", own.entry, "law"), f"{words} too; leave out that of the wider one")
         shape, law = self.drawing.kind(own.feature).shape, named(spec.law.fitting)
         form = whole_form(spec, shape)
-        draw: Draw = Scalar(law(spec.law, form, self.scene.files))
+        draw: Draw = FittedForm(law(spec.law, form, self.scene.files))
         if self.drawing.is_enveloped(own.feature):
             size = sized_by(self.drawing, own.feature, "mmc")
             share = law(spec.law, 1.0, self.scene.files)

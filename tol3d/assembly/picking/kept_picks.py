@@ -18,7 +18,7 @@ from tol3d.cad.solids.built_shape import BuiltShape
 from tol3d.cad.solids.kept_shape import KeptShape, run_program
 from tol3d.cad.solids.pick import PickedFace, Triple
 from tol3d.cad.step.step_shape import StepShape
-from tol3d.errors import GeometryError, SceneError
+from tol3d.errors import GeometryError, Problem, SceneError
 from tol3d.files import FileContent, Files
 from tol3d.scene import Scene
 from tol3d.units import LARGEST
@@ -106,7 +106,8 @@ class Kept:
         found = self.picks.get(part, {}).get(feature, ())
         fits = all(face.kind in spec.face_kinds for face in found) if spec.face_kinds else True
         if len(found) != len(spec.faces_picked) or not fits or not all(map(_has_size, found)):
-            raise SceneError(f"{FEATURES}: expected the faces of {part}.{feature}, found others; the run is damaged")
+            words = f"expected the faces of {part}.{feature}, found others; the run is damaged"
+            raise SceneError(Problem.at(FEATURES, words))
         return found
 
     def selected(self, part: str, feature: str, spec: StepSpec) -> tuple[PickedFace, ...]:
@@ -153,13 +154,14 @@ def kept_in(files: Files, source: Path) -> Kept:
         SceneError: there is no such file, or it is invalid.
     """
     if FEATURES not in files:
-        raise SceneError(f"{source}: expected {FEATURES} beside it, found none; run the scene again")
+        raise SceneError(Problem.at(source, f"expected {FEATURES} beside it, found none; run the scene again"))
     try:
         found = KeptPicks.model_validate_json(files[FEATURES].content)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))
-        raise SceneError(f"{files[FEATURES].path}: {place}: {first['msg']}; the run is damaged") from None
+        words = f"{first['msg']}; the run is damaged"
+        raise SceneError(Problem.at(files[FEATURES].path, words, path=place)) from None
     picks = {
         part: {feature: tuple(PickedFace(**dict(face)) for face in faces) for feature, faces in own.items()}
         for part, own in found.picks.items()

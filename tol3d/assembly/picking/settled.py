@@ -25,7 +25,7 @@ from tol3d.files import Files
 from tol3d.parts.details import DetailError
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
-from tol3d.scene.references import Problem, refuse
+from tol3d.scene.references import Refusal, refuse
 from tol3d.units import Quantity
 
 AGREED: Final = 1e-4
@@ -91,7 +91,7 @@ def settle(scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Sc
         kept, files = kept_in(known, scene.source), NO_FILES
     else:
         kept, files = _looked_up(scene, solids, run_builders=run_builders)
-    problems: list[Problem] = []
+    problems: list[Refusal] = []
     parts = dict(scene.parts)
     for name, own in solids.items():
         features = {}
@@ -124,7 +124,7 @@ def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: b
     names: dict[str, tuple[str, ...]] = {}
     places: dict[str, tuple[Triple, Triple, Triple]] = {}
     files = {}
-    problems: list[Problem] = []
+    problems: list[Refusal] = []
     for name, own in solids.items():
         if isinstance(own, StepSpec):
             picks[name], unfound = looked_up(name, own, scene.files[own.file])
@@ -179,7 +179,7 @@ def _triple(vector: tuple[Quantity, Quantity, Quantity]) -> Triple:
 
 
 def _with_numbers(
-    spec: FeatureUnion, faces: tuple[PickedFace, ...], path: KeyPath, problems: list[Problem]
+    spec: FeatureUnion, faces: tuple[PickedFace, ...], path: KeyPath, problems: list[Refusal]
 ) -> FeatureUnion:
     """A feature with the numbers of its faces; contradicting numbers are problems."""
     try:

@@ -15,14 +15,13 @@ from tol3d.cad.step.found_features import FoundFeature
 from tol3d.cad.step.reading import StepFile, read_step
 from tol3d.cad.step.refused import StepError
 from tol3d.cad.step.selectors import SelectionError, Selector, numbers, selected
-from tol3d.errors import SceneError
+from tol3d.errors import Problem, SceneError
 from tol3d.files import FileContent
 from tol3d.scene.place import KeyPath
+from tol3d.scene.references import Refusal
 
 FILES: Final = 8
 """STEP files that are kept as they were read, each some MB."""
-
-Problem = tuple[KeyPath, str]
 
 FACE_KINDS: Final[dict[str, FaceKind]] = {
     "plane": "plane",
@@ -39,7 +38,7 @@ FACE_KINDS: Final[dict[str, FaceKind]] = {
 
 def looked_up(
     part: str, spec: StepSpec, file: FileContent
-) -> tuple[Mapping[str, tuple[PickedFace, ...]], Sequence[Problem]]:
+) -> tuple[Mapping[str, tuple[PickedFace, ...]], Sequence[Refusal]]:
     """Faces that a part's features select, by feature, and problems where they select none."""
     try:
         read = _read(file)
@@ -50,7 +49,7 @@ def looked_up(
     except StepError as error:
         field = "use" if spec.use is not None else "file" if spec.product is None else "product"
         return {}, [(("parts", part, field), str(error))]
-    faces, problems = dict[str, tuple[PickedFace, ...]](), list[Problem]()
+    faces, problems = dict[str, tuple[PickedFace, ...]](), list[Refusal]()
     for name, own in spec.selectors.items():
         path: KeyPath = ("parts", part, "features", name)
         try:
@@ -153,4 +152,5 @@ def checked(part: str, spec: StepSpec, name: str, faces: Sequence[PickedFace], f
     own = spec.selectors[name]
     wanted = {FACE_KINDS[own.kind]} if own.kind is not None else set(FACE_KINDS.values())
     if len(faces) != (own.count or 1) or not all(face.kind in wanted for face in faces):
-        raise SceneError(f"{file}: expected the faces of {part}.{name}, found others; the run is damaged")
+        words = f"expected the faces of {part}.{name}, found others; the run is damaged"
+        raise SceneError(Problem.at(file, words))

@@ -4,7 +4,7 @@
 zone by the size of its feature, `Widened` draws from what it leaves. An `Envelope` bounds a form by the same size.
 """
 
-from tol3d.assembly.zones.form_draw import EnvelopedForm
+from tol3d.assembly.zones.form_draw import EnvelopedForm, FittedForm
 from tol3d.assembly.zones.widened import Bonus, Envelope, JudgedProcess, SizedBy, Widened
 from tol3d.assembly.zones.zone import Zone
 from tol3d.assembly.zones.zone_draw import (
@@ -23,6 +23,7 @@ __all__ = [
     "Confined",
     "Envelope",
     "EnvelopedForm",
+    "FittedForm",
     "JudgedProcess",
     "Process",
     "SizedBy",

@@ -14,9 +14,18 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.statistics.distributions import Distribution
 from tol3d.study.system.dependent import Given
-from tol3d.study.system.draw import Draw
+from tol3d.study.system.draw import Draw, Scalar
 from tol3d.study.system.normals import scalars
 from tol3d.study.system.steepest import Values
+
+
+@dataclass(frozen=True)
+class FittedForm(Scalar):
+    """A form that no envelope bounds: it begins at nothing, also where its tolerance is another one."""
+
+    def scaled(self, factor: float) -> Self:
+        """See Scalable."""
+        return replace(self, distribution=self.distribution.scaled(factor, about=0.0))
 
 
 @dataclass(frozen=True)

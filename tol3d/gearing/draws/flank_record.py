@@ -11,9 +11,10 @@ Teeth count from 0 or from 1, round the gear; the first of them is the gear's to
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
-from tol3d.errors import SceneError
+from tol3d.errors import Problem, SceneError
 from tol3d.statistics.distributions.csv_table import Cell, Column, CsvTable
 from tol3d.units import FACTORS, MICRO_SIGNS
 
@@ -63,7 +64,8 @@ class FlankRecord:
             line, side, tooth = column.cells[k].line, flanks[k], teeth[k]
             if before := seen.get((side, tooth)):
                 words = f"the {side} flank of tooth" if side else "tooth"
-                raise SceneError(f"{column.path}:{line}: {words} {first + tooth} again, as in line {before}")
+                twice = f"{words} {first + tooth} again, as in line {before}"
+                raise SceneError(Problem.at(column.path, twice, line=line))
             seen[side, tooth] = line
             if abs(number * factor) > LARGEST:
                 raise column.refused(column.cells[k], "a deviation of at most 1 mm", "; is its unit another one?")
@@ -86,13 +88,13 @@ class FlankRecord:
         match = NAMED.fullmatch(names[0])
         stated = match["unit"] if match else None
         unit = (stated or self.unit or "").translate(MICRO_SIGNS)
-        where = f"{self.table.path}:{self.table.header_line}: column {names[0]!r}"
+        at = partial(Problem.at, self.table.path, line=self.table.header_line, path=f"column {names[0]!r}")
         if stated and self.unit and unit != self.unit.translate(MICRO_SIGNS):
-            raise SceneError(f"{where}: expected the unit {self.unit!r} that the scene gives, got {stated!r}")
+            raise SceneError(at(f"expected the unit {self.unit!r} that the scene gives, got {stated!r}"))
         if unit not in FACTORS["length"]:
             words = ", ".join(FACTORS["length"])
             example, got = f"{_bare(names[0])} [um]", repr(stated) if stated else "none"
-            raise SceneError(f"{where}: expected its unit, as in {example!r}, one of {words}; got {got}")
+            raise SceneError(at(f"expected its unit, as in {example!r}, one of {words}; got {got}"))
         return self.table.column(names[0]), FACTORS["length"][unit]
 
     def _named(self, name: str) -> Column | None:
@@ -137,10 +139,8 @@ class FlankRecord:
             listed = ", ".join(str(first + tooth) for tooth in lacking[:LISTED])
             more = f" and {len(lacking) - LISTED} more" if len(lacking) > LISTED else ""
             words = f"the {side} flank of tooth" if side else "tooth"
-            raise SceneError(
-                f"{self.table.path}: column {self.column!r}: expected a row for each of {self.teeth} teeth, "
-                f"got none for {words} {listed}{more}"
-            )
+            sentence = f"expected a row for each of {self.teeth} teeth, got none for {words} {listed}{more}"
+            raise SceneError(Problem.at(self.table.path, sentence, path=f"column {self.column!r}"))
 
 
 def _bare(name: str) -> str:

@@ -163,7 +163,7 @@ def _off_shafts(scene: Scene, bores: Bores) -> Iterator[str]:
             places = [sum(places) / 2]
         for k, at in enumerate(places):
             if isinstance(shaft, ShaftSpec) and (sentence := off_shaft(own.shaft, shaft, at)):
-                yield warned(("moves", own.move, "in", k), sentence)
+                yield warned(scene.origin, ("moves", own.move, "in", k), sentence)
 
 
 def _entries_of(scene: Scene, vocabulary: Vocabulary) -> Scene:

@@ -73,12 +73,14 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
         if min(sign * extreme for extreme in law.extremes) > 0.0:
             words = "expected teeth that are thinner than nominal, got thicker ones in every build"
             yield warned(
-                path, f"{words}; allowances of a drawing are {'positive' if sign < 0.0 else 'negative'}: check the sign"
+                scene.origin,
+                path,
+                f"{words}; allowances of a drawing are {'positive' if sign < 0.0 else 'negative'}: check the sign",
             )
         if sentence := _other_nominal(spec, gear):
-            yield warned(path, sentence)
+            yield warned(scene.origin, path, sentence)
         if sentence := THICKNESS.sentence(f"the tooth thickness of {spec.of!r}", left, larger_end(law) * arc):
-            yield warned(path, sentence)
+            yield warned(scene.origin, path, sentence)
 
 
 def refuse_other_measure(scene: Scene, name: str, spec: ToothThicknessSpec, gear: Gear) -> None:

@@ -50,7 +50,7 @@ def _pins(scene: Scene, planetary_set: PlanetarySet, made: Made) -> Iterator[str
     for path, spec in _of_pins(scene, planetary_set):
         far, low = _reach(scene, spec)
         if sentence := HALF.sentence(f"the module of {smallest.name!r}", smallest.module, far):
-            yield warned(path, sentence)
+            yield warned(scene.origin, path, sentence)
         radial = isinstance(spec, PlanetPinSpec) and spec.direction == "radial"
         taken += -2 * low * math.sin(half_angle) if radial else 2 * abs(far)
     if planetary_set.planets > 1 and taken > room > 0.0:
@@ -58,7 +58,8 @@ def _pins(scene: Scene, planetary_set: PlanetarySet, made: Made) -> Iterator[str
             f"expected planets that stay clear of their neighbours, whose pins are {pitch:.4g} mm apart, got planets "
         )
         words += f"that overlap by up to {taken - room:.4g} mm where pins are at their worst places"
-        yield warned(("moves", planetary_set.name, "planets"), f"{words}; check the units of the pins' places")
+        words += "; check the units of the pins' places"
+        yield warned(scene.origin, ("moves", planetary_set.name, "planets"), words)
 
 
 def _of_pins(scene: Scene, planetary_set: PlanetarySet) -> Iterator[tuple[KeyPath, PlanetPinSpec | BorePositionSpec]]:

@@ -209,6 +209,7 @@ class DistributionSpec(Strict, ABC):
     kind: str
 
     _drawn: Any = PrivateAttr(default=None)
+    _between: Any = PrivateAttr(default=None)
 
     @property
     def drawn(self) -> Any:
@@ -216,21 +217,31 @@ class DistributionSpec(Strict, ABC):
         return self._drawn
 
     @property
+    def between(self) -> Any:
+        """The LimitLaw that made it of limits on a drawing; None of others."""
+        return self._between
+
+    @property
     def by_default_law(self) -> bool:
         """True if the default law of the scene decided the kind of law."""
         return self._drawn is not None and not (isinstance(self._drawn, dict) and "law" in self._drawn)
 
-    def as_drawn(self, written: Any) -> Self:
-        """The law that is dumped as limits on a drawing; another law made of it is dumped as it is."""
+    def as_drawn(self, written: Any, between: Any) -> Self:
+        """The law that is dumped as limits on a drawing; another law made of it is dumped as it is.
+
+        Args:
+            written: the limits, as text, a list or keys.
+            between: the LimitLaw that made it of them.
+        """
         law = self.model_copy()
-        law._drawn = written
+        law._drawn, law._between = written, between
         return law
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy; one with other values is no longer as it was drawn."""
         copied = super().model_copy(update=update, deep=deep)
         if update:
-            copied._drawn = None
+            copied._drawn = copied._between = None
         return copied
 
     @model_serializer(mode="wrap")

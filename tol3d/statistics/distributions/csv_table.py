@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from tol3d.errors import SceneError
+from tol3d.errors import Problem, SceneError
 from tol3d.files import FileContent
 from tol3d.units import BARE_NUMBER
 
@@ -86,7 +86,8 @@ class Column:
 
     def refused(self, cell: Cell, expected: str, hint: str = "") -> SceneError:
         """The error that names a cell of it."""
-        return SceneError(f"{self.path}:{cell.line}: column {self.name!r}: expected {expected}, got {cell.shown}{hint}")
+        words = f"expected {expected}, got {cell.shown}{hint}"
+        return SceneError(Problem.at(self.path, words, line=cell.line, path=f"column {self.name!r}"))
 
 
 @dataclass(frozen=True)
@@ -122,16 +123,17 @@ class CsvTable:
                 row = [self.separator.join(row)]
             elif any(cell.strip() for cell in row[len(self.names) :]):
                 hint = f"; {COMMA_HINT}" if self.separator == "," else ""
-                raise SceneError(
-                    f"{self.path}:{line}: expected {len(self.names)} cells, as in the header, got {len(row)}{hint}"
-                )
+                words = f"expected {len(self.names)} cells, as in the header, got {len(row)}{hint}"
+                raise SceneError(Problem.at(self.path, words, line=line))
             cells.append(Cell(line, row[index].strip() if index < len(row) else ""))
         return Column(self.path, name, cells, self.separator == ";" or alone, self.separator == ";")
 
     def refused_header(self, expected: str) -> SceneError:
         """The error that names the header."""
         found = ", ".join(repr(name) for name in self.names) or "an empty file"
-        return SceneError(f"{self.path}:{self.header_line}: expected {expected} in the header, got {found}")
+        return SceneError(
+            Problem.at(self.path, f"expected {expected} in the header, got {found}", line=self.header_line)
+        )
 
 
 def csv_table(file: FileContent) -> CsvTable:
@@ -153,7 +155,8 @@ def _rows(file: FileContent, reader: "Reader") -> Iterator[tuple[int, list[str]]
             if any(cell.strip() for cell in row):
                 yield reader.line_num, row
     except csv.Error as error:
-        raise SceneError(f"{file.path}:{reader.line_num}: expected comma-separated values, got {error}") from None
+        words = f"expected comma-separated values, got {error}"
+        raise SceneError(Problem.at(file.path, words, line=reader.line_num)) from None
 
 
 def _text(file: FileContent) -> str:
@@ -161,4 +164,4 @@ def _text(file: FileContent) -> str:
         return file.content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = file.content[: error.start].count(b"\n") + 1
-        raise SceneError(f"{file.path}:{line}: expected UTF-8 text, got a byte that is none") from None
+        raise SceneError(Problem.at(file.path, "expected UTF-8 text, got a byte that is none", line=line)) from None

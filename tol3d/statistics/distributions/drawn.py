@@ -14,7 +14,7 @@ from pydantic import Field, TypeAdapter, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from tol3d.errors import InputError
-from tol3d.statistics.distributions.base import DistributionSpec
+from tol3d.statistics.distributions.base import Distribution, DistributionSpec
 from tol3d.statistics.distributions.default_law import LimitLaw, StatedLimitLaw, UniformBetween
 from tol3d.statistics.standards import iso_286, iso_1328_2, iso_2768
 from tol3d.strict import Strict, refused
@@ -29,7 +29,7 @@ MINUS: Final = str.maketrans({"−": "-"})  # as drawings are copied
 NUMBER: Final = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 UNIT: Final = r"[^\s\d.,+±/-][^\s,+±/-]*(?:/[^\s\d,+±/-]+)*"
 NOMINAL: Final = rf"(?:(?P<nominal>{NUMBER})\s*(?P<nominal_unit>{UNIT})?\s*)?"
-SYMMETRIC: Final = re.compile(rf"\s*{NOMINAL}(?:±|\+-|\+/-)\s*(?P<size>{NUMBER})\s*(?P<unit>{UNIT})?\s*")
+SYMMETRIC: Final = re.compile(rf"\s*{NOMINAL}(?P<sign>±|\+-|\+/-)\s*(?P<size>{NUMBER})\s*(?P<unit>{UNIT})?\s*")
 TWO: Final = re.compile(
     rf"\s*{NOMINAL}(?P<one>[+-]{NUMBER}|0)\s*(?P<one_unit>{UNIT})?\s*/\s*(?P<other>[+-]{NUMBER}|0)\s*(?P<unit>{UNIT})?\s*"
 )
@@ -139,13 +139,7 @@ def drawn_law(value: Any) -> DistributionSpec:
     """
     law = _default.get()
     if isinstance(value, dict):
-        key = next(key for key in KEYS if key in value)
-        if key not in _SPECS:
-            words = "limits, as in 0/+30 um, for the formulae of ISO 17485 (f_pt, F_p and F_r by the"
-            raise refused(
-                key, f"{words} tolerance diameter and the mean normal module) are not in tol3d", shown(value[key])
-            )
-        stated = _SPECS[key].model_validate(value)
+        stated = _stated(value)
         law = stated.law or law
         lower, upper = _limits(stated)
     else:
@@ -153,7 +147,83 @@ def drawn_law(value: Any) -> DistributionSpec:
     if law is None:
         words = f'the key "{DEFAULT_LAW}" of the scene, such as "{DEFAULT_LAW}: {{kind: normal, sigmas: 3}}", by which '
         raise refused("", f"{words}limits without a law are read", "none; or write the law out, with kind:")
-    return law.between(lower, upper).as_drawn(_as_text(value))
+    return law.between(lower, upper).as_drawn(_as_text(value), law)
+
+
+def restated(spec: DistributionSpec, law: Distribution) -> DistributionSpec:
+    """Spec of another law of its kind, as it was written: in the same units, limits on a drawing as such limits.
+
+    Args:
+        spec: the law as a scene states it.
+        law: the other one [mm, rad or K]; of limits on a drawing its middle is that of its limits.
+
+    Raises:
+        InputError: the law cannot be stated by numbers.
+    """
+    between: LimitLaw | None = spec.between
+    if between is None:
+        return spec.stating(law)
+    told = spec.numbers(law)
+    written = rewritten(spec.drawn, told["lower"], told["upper"])
+    limits = written["limits"] if isinstance(written, dict) else written
+    return between.between(*_written(limits, "")).as_drawn(written, between)
+
+
+def rewritten(written: Any, lower: float, upper: float) -> Any:
+    """Limits in the form and the units in which they were written; those of a standard as text, with their law.
+
+    Args:
+        written: text, a list or keys, as a drawing has them.
+        lower, upper: the new limits [mm, rad or K]; they are written to ten digits.
+
+    >>> rewritten("40.1 mm +0.12/0", -0.03, 0.15), rewritten("±20 um", -0.01, 0.025)
+    ('40.1 mm +0.15/-0.03', '+25/-10 um')
+    >>> rewritten({"fit": "H7", "of": "32 mm"}, 0.0, 0.0375)
+    '+0.0375/0 mm'
+    """
+    if isinstance(written, dict):
+        if "limits" in written:
+            return {**written, "limits": rewritten(written["limits"], lower, upper)}
+        size = Quantity.parse(written["of"]) if written.keys() & {"fit", "general"} and "of" in written else None
+        text = _text_of(lower, upper, size or _limits(_stated(written))[1])
+        return {"limits": text, "law": written["law"]} if "law" in written else text
+    if isinstance(written, list | tuple):
+        own = [Quantity.parse(each) for each in written]
+        ends = (lower, upper) if own[0].internal < own[1].internal else (upper, lower)
+        return [str(each.like(end)) for each, end in zip(own, ends, strict=True)]
+    return _rewritten_text(written, lower, upper)
+
+
+def _rewritten_text(written: str, lower: float, upper: float) -> str:
+    """Text of the same form; plus and minus only where both limits are as large."""
+    first, second = _of_text(written, "")
+    plain = written.translate(MINUS)
+    if match := SYMMETRIC.fullmatch(plain):
+        high, low = second.like(upper), second.like(lower)
+        if high.number == -low.number:
+            return f"{written[: match.start('size')]}{_number(high)}{written[match.end('size') :]}"
+        return f"{written[: match.start('sign')]}{_signed(high)}/{_signed(low)}{written[match.end('size') :]}"
+    match = TWO.fullmatch(plain)
+    assert match is not None
+    ends = (lower, upper) if first.internal < second.internal else (upper, lower)
+    one, other = (_signed(each.like(end)) for each, end in zip((first, second), ends, strict=True))
+    (start, middle), (begin, end) = match.span("one"), match.span("other")
+    return f"{written[:start]}{one}{written[middle:begin]}{other}{written[end:]}"
+
+
+def _text_of(lower: float, upper: float, unit: Quantity) -> str:
+    high, low = unit.like(upper), unit.like(lower)
+    if high.number == -low.number:
+        return f"±{high}"
+    return f"{_signed(high)}/{_signed(low)} {unit.unit}"
+
+
+def _number(quantity: Quantity) -> str:
+    return str(quantity).partition(" ")[0]
+
+
+def _signed(quantity: Quantity) -> str:
+    return f"{'+' if quantity.number > 0.0 else ''}{_number(quantity)}" if quantity.number else "0"
 
 
 def limits_written(text: str) -> tuple[Quantity, Quantity] | None:
@@ -196,6 +266,16 @@ def _as_text(value: Any) -> Any:
     if isinstance(value, LimitLaw):
         return value.model_dump(exclude_unset=True)
     return str(value) if isinstance(value, Quantity) else value
+
+
+def _stated(value: dict[str, Any]) -> Stated:
+    key = next(key for key in KEYS if key in value)
+    if key not in _SPECS:
+        words = "limits, as in 0/+30 um, for the formulae of ISO 17485 (f_pt, F_p and F_r by the"
+        raise refused(
+            key, f"{words} tolerance diameter and the mean normal module) are not in tol3d", shown(value[key])
+        )
+    return _SPECS[key].model_validate(value)
 
 
 def _limits(stated: Stated) -> tuple[Quantity, Quantity]:

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 from typing_extensions import override
 
-from tol3d.errors import SceneError
+from tol3d.errors import Problem, SceneError
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 from tol3d.statistics.distributions.base import LARGEST_DEVIATION, Distribution, DistributionSpec, Place
@@ -228,15 +228,14 @@ class EmpiricalSpec(DistributionSpec):
         file = files[self.file]
         column = csv_table(file).column(self.column)
         if len(column.cells) < 2:
-            raise SceneError(
-                f"{file.path}: expected at least two values in column {self.column!r}, got {len(column.cells)}"
-            )
+            words = f"expected at least two values in column {self.column!r}, got {len(column.cells)}"
+            raise SceneError(Problem.at(file.path, words))
         sample = np.array(column.numbers()) * self.quantities()["unit"].internal
         if not np.all(np.abs(sample) <= LARGEST_DEVIATION):
-            raise SceneError(f"{file.path}: expected deviations of less than 1e9 mm, rad or K")
+            raise SceneError(Problem.at(file.path, "expected deviations of less than 1e9 mm, rad or K"))
         if self.quantities()["unit"].dimension == "temperature" and sample.min() < ABSOLUTE_ZERO:
-            least = f"at least {ABSOLUTE_ZERO} K, which is absolute zero"
-            raise SceneError(f"{file.path}: expected {least}, in column {self.column!r}, got {sample.min():.6g} K")
+            words = f"expected at least {ABSOLUTE_ZERO} K, which is absolute zero, in column {self.column!r}"
+            raise SceneError(Problem.at(file.path, f"{words}, got {sample.min():.6g} K"))
         sample = np.sort(sample)
         sample.flags.writeable = False
         return Empirical(sample, self.draws)

@@ -58,7 +58,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         raise InputError(f"{_said_by('witness')}: {sentence}")
     with faults_of(mechanism.origin):
         problem = next(iter(system.problems()), None)
-        implausible = (*scene.grammar.warnings(scene), *_unphysical(system))
+        implausible = (*scene.grammar.warnings(scene), *_unphysical(scene, system))
     if problem:
         raise scene.refuse(*problem)
     return Simulation(
@@ -74,13 +74,14 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
     )
 
 
-def _unphysical(system: System) -> Iterator[str]:
+def _unphysical(scene: Scene, system: System) -> Iterator[str]:
     """Warnings of laws that reach below the least physical deviation, such as a negative clearance or play."""
     for contributor in system.contributors:
         if contributor.least is not None and (low := contributor.distribution.low) < contributor.least - LEAST_OFF:
             least = contributor.least / contributor.per_unit
             words = f"expected at least {least:g} {contributor.unit}, for less is not physical"
             yield warned(
+                scene.origin,
                 ("tolerances", contributor.name),
                 f"{words}, got down to {low / contributor.per_unit:.4g} {contributor.unit}",
             )

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Final, Literal, Self
+from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import Field, model_validator
 from typing_extensions import override
@@ -13,7 +13,7 @@ from tol3d.gearing.draws.pitch_draw import tooth_names
 from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
 from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec
 from tol3d.gearing.grammar.tolerances.flank_shape import NormalShapeSpec, UniformShapeSpec
-from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec, no_word
+from tol3d.gearing.grammar.tolerances.flank_tolerance import OF_CLASSES, FlankToleranceSpec, no_word
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, Nominal
 from tol3d.gearing.grammar.tolerances.gears import TeethOffAxisSpec
 from tol3d.gears import LEFT, RIGHT, Gear, SpurGear
@@ -130,6 +130,13 @@ class ToothToToothSpec(FlankToleranceSpec):
         teeth = range(gear.teeth)
         places = tuple(tuple(Place(tooth, flank, out) for flank in (RIGHT, LEFT)) for tooth in teeth)
         return FlankDeviation(self.of, UNIFORM, places)
+
+    @override
+    def in_numbers(self, draw: Any) -> Self:
+        if self.limits.size is not None:
+            return self
+        size = OF_CLASSES.like(2.0 * draw.distribution.high)
+        return self.model_copy(update={"limits": CompositeLimitsSpec(size=size)})
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
         """See ToleranceEntry: the limit."""

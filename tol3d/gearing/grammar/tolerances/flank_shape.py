@@ -13,7 +13,7 @@ import math
 from abc import abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Final, Literal, Self
+from typing import Annotated, Any, Final, Literal, Self
 
 from pydantic import Field, model_validator
 from typing_extensions import override
@@ -23,6 +23,7 @@ from tol3d.files import Files
 from tol3d.gearing.draws.pitch_draw import GivenDraw, tooth_names
 from tol3d.gearing.effects import FORM, HELIX, SLOPE, FlankDeviation, Place
 from tol3d.gearing.grammar.tolerances.flank_tolerance import (
+    OF_CLASSES,
     FlankToleranceSpec,
     IsoClass,
     RecordSpec,
@@ -36,6 +37,7 @@ from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.statistics.distributions import Distribution, Normal, StatedDistribution, Uniform
 from tol3d.statistics.distributions.base import Stays
+from tol3d.statistics.distributions.drawn import restated
 from tol3d.strict import Strict, refused
 from tol3d.study.system.draw import Draw, Each, Scalar
 from tol3d.units import Of, Quantity, refuse_dimension
@@ -205,6 +207,19 @@ class FlankShapeSpec(FlankToleranceSpec):
             yield from self.law.file_names()
         if isinstance(self.law, StatedShapeSpec):
             yield from ((("law", "distribution", field), name) for field, name in self.law.distribution.file_names())
+
+    @override
+    def in_numbers(self, draw: Any) -> Self:
+        if self.limits is None or self.limits.iso_class is None:
+            return self
+        return self.model_copy(update={"limits": ShapeLimitsSpec(size=OF_CLASSES.like(draw.distribution.high))})
+
+    @override
+    def with_law(self, law: Distribution) -> Self:
+        if not isinstance(self.law, StatedShapeSpec):
+            return super().with_law(law)
+        stated = self.law.model_copy(update={"distribution": restated(self.law.distribution, law)})
+        return self.model_copy(update={"law": stated})
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
         """See ToleranceEntry: the limit, or the stated law."""

@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -22,7 +22,10 @@ from tol3d.scene.place import KeyPath
 from tol3d.statistics.distributions.csv_table import csv_table
 from tol3d.strict import Strict, refused
 from tol3d.study.system.draw import Draw
-from tol3d.units import MICRO_SIGNS, UNITS, shown
+from tol3d.units import MICRO_SIGNS, UNITS, Quantity, shown
+
+OF_CLASSES: Final = Quantity(1.0, "um")
+"""Unit of the limits of a class, written in numbers."""
 
 
 class RecordSpec(Strict):

@@ -3,12 +3,12 @@
 import math
 from collections.abc import Iterator, Sequence
 from itertools import accumulate, chain
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 from typing_extensions import override
 
-from tol3d.errors import GeometryError, InputError, SceneError
+from tol3d.errors import GeometryError, InputError, Problem, SceneError
 from tol3d.files import Files
 from tol3d.gearing.draws.normal_pitch_draw import NormalPitchDraw
 from tol3d.gearing.draws.pitch_draw import (
@@ -22,6 +22,7 @@ from tol3d.gearing.draws.pitch_draw import (
 )
 from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
 from tol3d.gearing.grammar.tolerances.flank_tolerance import (
+    OF_CLASSES,
     FlankToleranceSpec,
     IsoClass,
     RecordSpec,
@@ -142,11 +143,10 @@ class PitchRecordSpec(RecordSpec):
             if self.deviation == "single":
                 over = math.fsum(index)
                 if abs(over) > teeth * record.grain() / 2:
-                    raise SceneError(
-                        f"{record.table.path}: column {self.column!r}: expected single pitch deviations that sum to "
-                        f"zero{f' over the {side} flanks' if side else ''}, got {1e3 * over:g} um; index deviations "
-                        "are `deviation: index`"
-                    )
+                    flanks = f" over the {side} flanks" if side else ""
+                    words = f"expected single pitch deviations that sum to zero{flanks}, got {1e3 * over:g} um"
+                    words += "; index deviations are `deviation: index`"
+                    raise SceneError(Problem.at(record.table.path, words, path=f"column {self.column!r}"))
                 index = [value - over * (k + 1) / teeth for k, value in enumerate(accumulate(index))]
             mean = math.fsum(index) / teeth
             found[side] = [sense * (index[self.placed(tooth, teeth)] - mean) for tooth in range(teeth)]
@@ -189,6 +189,14 @@ class PitchDeviationSpec(FlankToleranceSpec):
             got = " and ".join(given) or "none"
             raise refused("law", f"{' and '.join(wanted)} for flanks {self.flanks}", got)
         return self
+
+    @override
+    def in_numbers(self, draw: Any) -> Self:
+        if self.limits is None or self.limits.iso_class is None:
+            return self
+        limits: PitchLimits = draw.limits
+        single, cumulative = OF_CLASSES.like(limits.single), OF_CLASSES.like(limits.cumulative)
+        return self.model_copy(update={"limits": PitchLimitsSpec(single=single, cumulative=cumulative)})
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
         """See ToleranceEntry: both limits."""
