@@ -14,9 +14,10 @@ from toys.registered import TOYS, known
 from tol3d import Overrides, Run, run_scene
 from tol3d.report.body import World
 from tol3d.report.html.view_model import ViewModel
-from tol3d.report.presenter import Display, ShowsBuilds, display_build, presenter_of
+from tol3d.report.presenter import Display, ShowsBuilds, Which, display_build, presenter_of
 from tol3d.simulate import load, replayed, simulation_of
 from tol3d.study.system.stated import mean_build, nominal_build
+from tol3d.study.system.trials import Trials
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.simulation import Simulation
 
@@ -51,7 +52,7 @@ def test_a_stated_build_is_shown_as_its_trial(name: str, magnify: float, tmp_pat
     run, simulation = _ran(name, tmp_path / "run")
     presenter = presenter_of(run.found)
     system = simulation.system
-    builds = {
+    builds: dict[Which, Trials] = {
         TRIAL: drawn(simulation, TRIAL, 1),
         "nominal": nominal_build(system),
         "mean": mean_build(system, system.measures[0]),
@@ -78,8 +79,8 @@ def _model(name: str, factors: tuple[float, ...] = (1.0,)) -> ViewModel:
     simulation, model = simulation_of(load(name)), ViewModel()
     nominal = replayed(simulation, nominal_build(simulation.system))
     trial = replayed(simulation, drawn(simulation, TRIAL, 1))
-    model.add("nominal", [(display_build(nominal, "nominal"), "as drawn")])
-    model.add("trial", [(display_build(trial, "trial", magnify=factor), f"x {factor:g}") for factor in factors])
+    model.add("nominal", [(1.0, display_build(nominal, "nominal"), "as drawn")])
+    model.add("trial", [(own, display_build(trial, "trial", magnify=own), f"x {own:g}") for own in factors])
     return model
 
 
@@ -142,7 +143,7 @@ from tol3d.simulate import load, replayed, simulation_of
 from tol3d.study.system.stated import nominal_build
 simulation, model = simulation_of(load("door")), ViewModel()
 build = replayed(simulation, nominal_build(simulation.system))
-model.add("nominal", [(display_build(build, "nominal"), "")])
+model.add("nominal", [(1.0, display_build(build, "nominal"), "")])
 assert model.glb()[:4] == b"glTF"
 print(*{"vtkmodules", "pyvista", "matplotlib", "cadquery"} & {*sys.modules})
 """

@@ -67,12 +67,12 @@ def view_3d(run: Run, presenter: Presenter, trials: Sequence[int] = ()) -> Marku
     return _figure(model, packed, _still(run), _notes(model, nominal, coarser))
 
 
-def _displays(run: Run, presenter: Presenter, which: Which) -> Iterator[tuple[Display, str]]:
+def _displays(run: Run, presenter: Presenter, which: Which) -> Iterator[tuple[float, Display, str]]:
     """A build at every magnification, with its words."""
     for factor in (1.0,) if which == "nominal" else FACTORS:
         display = presenter.display(run, which, magnify=factor)
         measured = _measured(run, which, display.label) if factor == FACTORS[0] else display.label
-        yield display, "; ".join((measured, *display.notes))
+        yield factor, display, "; ".join((measured, *display.notes))
 
 
 def _packed(model: ViewModel) -> bytes:
@@ -169,7 +169,7 @@ def _figure(model: ViewModel, packed: bytes, still: str, notes: Sequence[str]) -
 def _controls(model: ViewModel) -> Iterator[Markup]:
     options = (tag("option", own.name, value=number) for number, own in enumerate(model.builds))
     slider = tag("input", type="range", name_="factor", min=0, max=len(FACTORS) - 1, value=0, step=1)
-    number = tag("output", f"{FACTORS[0]:g}", data_factors=" ".join(f"{own:g}" for own in FACTORS))
+    number = tag("output", f"{FACTORS[0]:g}", name_="times")
     yield tag(
         "div",
         tag("label", "build ", tag("select", *options, name_="build")),

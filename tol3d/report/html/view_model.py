@@ -26,11 +26,13 @@ class State:
     """A build as it is shown at one magnification.
 
     Args:
+        factor: of its deviations.
         words: its measures, and notes.
         meshes, poses: of each part, which of the model's meshes, and where (16 numbers, column by column) [mm].
         names: of contacts, gaps and other places (3 numbers) [mm].
     """
 
+    factor: float
     words: str
     meshes: tuple[int, ...]
     poses: tuple[list[float], ...]
@@ -69,32 +71,34 @@ class ViewModel:
     """Builds that are shown together, gathered one by one.
 
     Args:
+        wanted: name of the world that is shown; "" for that with the most bodies.
         surfaces: triangles of every mesh once, vertices (n, 3) [mm] and triangles (m, 3).
         parts: bodies of every build.
         builds: in the order in which they were added.
         world: the one that is shown; None before any build.
     """
 
+    wanted: str = ""
     surfaces: list[Surface] = field(default_factory=list)
     parts: tuple[ShownPart, ...] = ()
     builds: list[ShownBuild] = field(default_factory=list)
     world: World | None = None
     _of_parts: dict[str, list[int]] = field(default_factory=dict, init=False)
 
-    def add(self, name: str, displays: Iterable[tuple[Display, str]]) -> None:
+    def add(self, name: str, displays: Iterable[tuple[float, Display, str]]) -> None:
         """Add a build.
 
         Args:
             name: of the build.
-            displays: of the build at each magnification, and its words; of each the world of the first build is
-                shown, or that with the most bodies.
+            displays: of the build at each factor of its deviations, with its words. Of the first the world that
+                is wanted is shown, of the others that of its name.
 
         Raises:
             Tol3dError: it has no bodies in that world; or `displays` raises it.
         """
         states, shown, parts = list[State](), self.world, self.parts
-        for display, words in displays:
-            world = _world_of(display, shown)
+        for factor, display, words in displays:
+            world = _world_of(display, shown.name if shown else self.wanted)
             if world is None:
                 continue
             pieces = [(body, piece) for body in world.bodies for piece in body.pieces]
@@ -105,7 +109,7 @@ class ViewModel:
                 label: [float(f"{own:.9g}") for own in place]
                 for label, place in {**world.points, **world.marks}.items()
             }
-            states.append(State(words, tuple(mesh for mesh, _ in placed), poses, names))
+            states.append(State(factor, words, tuple(mesh for mesh, _ in placed), poses, names))
         if not states:
             raise Tol3dError(f"{name}: there is nothing to show in 3D")
         self.world, self.parts = shown, parts
@@ -134,9 +138,10 @@ class ViewModel:
         return cast(bytes, scene.export(file_type="glb"))
 
     def told(self) -> dict[str, Any]:
-        """The bodies and the builds, for JSON: `up`, `parts` (ShownPart) and `builds` (ShownBuild) by their fields."""
+        """The bodies and the builds, for JSON: `world`, `up`, `parts` (ShownPart) and `builds` (ShownBuild)."""
         assert self.world is not None, "there is a build"
         return {
+            "world": self.world.name,
             "up": list(self.world.up),
             "parts": [asdict(part) for part in self.parts],
             "builds": [asdict(build) for build in self.builds],
@@ -176,9 +181,9 @@ def laid_on(points: Array, others: Array) -> Array:
     return pose
 
 
-def _world_of(display: Display, shown: World | None) -> World | None:
-    """The world with the most bodies, or the one that is shown already."""
-    worlds = [world for world in display.worlds if world.bodies and (shown is None or world.name == shown.name)]
+def _world_of(display: Display, name: str) -> World | None:
+    """The world of that name, or without one that with the most bodies."""
+    worlds = [world for world in display.worlds if world.bodies and name in ("", world.name)]
     return max(worlds, key=lambda own: len(own.bodies), default=None)
 
 
