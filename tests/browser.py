@@ -55,12 +55,12 @@ class Page:
             self.asked.append(found["params"]["request"]["url"])
         return found
 
-    def open(self, path: Path, width: int = 1400, height: int = 1000, *, dark: bool = False) -> None:
-        """Show a file."""
+    def open(self, place: Path | str, width: int = 1400, height: int = 1000, *, dark: bool = False) -> None:
+        """Show a file, or the page of an address."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.call("Emulation.setEmulatedMedia", features=[scheme])
-        self.call("Page.navigate", url=path.resolve().as_uri())
+        self.call("Page.navigate", url=place if isinstance(place, str) else place.resolve().as_uri())
         self.wait("document.readyState === 'complete'")
 
     def ask(self, expression: str) -> Any:
@@ -115,6 +115,7 @@ def browser() -> Iterator[Page]:
             "--disable-dev-shm-usage",
             "--no-first-run",
             "--disable-background-networking",
+            "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
             f"--user-data-dir={profile}",
             "about:blank",
         ]

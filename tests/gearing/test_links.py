@@ -32,6 +32,7 @@ from tol3d.gearing.presenting.whole_trains import whole_trains
 from tol3d.gearing.shown.display import seated_build
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.study.execution.pools import Execution
+from tol3d.study.results.replaying import build_of
 from tol3d.study.results.versions import installed_versions
 from tol3d.study.system.trials import Trials
 
@@ -392,7 +393,7 @@ def test_on_a_carrier_play_follows_the_angle_against_it(tmp_path: Path, method: 
 @pytest.mark.slow
 def test_a_shaft_on_a_carrier_is_shown_where_it_went(runs: Mapping[str, Run]) -> None:
     """About the sun's axis by the carrier's turn; its own mark turns by -1/3 of the sun's, as Willis says."""
-    seen = seated_build(runs["wolfrom"], 3)
+    seen = seated_build(*build_of(runs["wolfrom"], 3))
     (train,) = whole_trains(seen)
     poses = {body.name: body.world_from_part for body in train.bodies}
 

@@ -12,6 +12,7 @@ from tol3d.gearing.shown.placed import CONE_DEFLECTION, DISPLAY_DEFLECTION
 from tol3d.gears import BevelPair
 from tol3d.report.drawn_solids import poly_data
 from tol3d.simulate import Overrides, run_scene
+from tol3d.study.results.replaying import build_of
 from tol3d.study.runs.run import Run
 
 ABOUT = 0.5  # mm; about the gap, of the outlines that are held against each other
@@ -47,7 +48,7 @@ def test_the_outlines_are_as_far_apart_as_the_gap_and_the_line_reaches_from_one_
     run: Run, trial: int, magnify: float
 ) -> None:
     """Within the chord errors of both display meshes: a cut at the front of a bevel pair would be 6 % off."""
-    seated = _as_seen(seated_build(run, trial, magnify=magnify).meshes[0])
+    seated = _as_seen(seated_build(*build_of(run, trial), magnify=magnify).meshes[0])
     section = gap_section(seated, [poly_data(*part.mesh()) for part in (seated.driver, seated.driven)])
     chord = CONE_DEFLECTION if isinstance(seated.mesh.pair, BevelPair) else DISPLAY_DEFLECTION
     assert distance(section) == pytest.approx(seated.gap_value, abs=2 * chord)
@@ -61,7 +62,7 @@ def test_the_outlines_are_as_far_apart_as_the_gap_and_the_line_reaches_from_one_
 @pytest.mark.slow
 def test_a_cut_stays_inside_both_faces_where_the_gap_lies_at_an_end(run: Run) -> None:
     """Moved to the end of its face a gap is cut 2 % inside of it, where both gears are."""
-    seated = _as_seen(seated_build(run, 0).meshes[0])
+    seated = _as_seen(seated_build(*build_of(run, 0)).meshes[0])
     meshes = [poly_data(*part.mesh()) for part in (seated.driver, seated.driven)]
     for far in (-1.0, 1.0):
         gap = seated.gap + far * np.array([0.0, 0.0, seated.driver.gear.face_width])

@@ -54,6 +54,7 @@ from tol3d.report.page import Heading, Row, Table
 from tol3d.report.share_charts import pareto
 from tol3d.report.table import Detail
 from tol3d.simulate import Overrides, run_scene, simulation_again, simulation_of
+from tol3d.study.results.replaying import build_of
 from tol3d.study.runs.run import Run
 
 SCENE = """
@@ -599,7 +600,7 @@ def test_step_holds_the_perturbed_solids(run: Run, tmp_path: Path) -> None:
     cadquery = pytest.importorskip("cadquery")
     exported = export_run(run, TRIAL, "step", out=tmp_path)
     solids = cadquery.importers.importStep(str(exported.files[0])).solids().vals()
-    seated = seated_build(run, TRIAL).meshes[0]
+    seated = seated_build(*build_of(run, TRIAL)).meshes[0]
     for solid, part in zip(solids, (seated.driver, seated.driven), strict=True):
         gear, nominal = of_kind(SpurGear, part.perturbed), of_kind(SpurGear, part.gear)
         exact = (gear.transverse_area - math.pi * gear.bore**2 / 4) * gear.face_width
@@ -634,7 +635,7 @@ def test_magnified_gap_grows_along_the_stack_up(run: Run) -> None:
     """j(X) = j(0) + X (j(1) - j(0)), to second order: squares of 20 um times X over the gears' 20 mm, times X^2."""
     factor = 8.0
     nominal = gear_model(simulation_again(run).system).meshes[0].pair.normal_backlash
-    plain, magnified = (seated_build(run, TRIAL, magnify=x).meshes[0] for x in (1.0, factor))
+    plain, magnified = (seated_build(*build_of(run, TRIAL), magnify=x).meshes[0] for x in (1.0, factor))
     expected = nominal + factor * (plain.gap_value - nominal)
     second_order = 4 * (factor * 0.020) ** 2 / 20
     assert magnified.gap_value == pytest.approx(expected, abs=second_order)
@@ -646,22 +647,26 @@ def test_magnified_gap_grows_along_the_stack_up(run: Run) -> None:
 
 @pytest.mark.slow
 def test_magnification_is_capped_where_the_gap_would_leave_its_space_or_a_tip_would_fold(run: Run) -> None:
-    assembly = seated_build(run, TRIAL, magnify=1e4)
+    assembly = seated_build(*build_of(run, TRIAL), magnify=1e4)
     seated = assembly.meshes[0]
     widest = OPEN_SHARE * seated.driver.gear.base_pitch
     assert 1 < assembly.magnify < 1e4
     assert seated.gap_value <= widest
     assert all(part.unfolded for part in (seated.driver, seated.driven))
     wanted = 1.03 * assembly.magnify  # 1e4 in 2^16 steps is within 1.2 %, three digits within 1 %
-    assert seated_build(run, TRIAL, magnify=wanted).magnify < wanted
+    assert seated_build(*build_of(run, TRIAL), magnify=wanted).magnify < wanted
     assert f"magnified {assembly.magnify:g} times, not 10000" in assembly.notes[0]
     assert seated.tip_clearance > 0
 
 
 def test_a_magnified_tip_keeps_its_points_in_their_order(run: Run) -> None:
     """Told by azimuths alone: corners that pass the points between them would fold the tip."""
-    for magnify, whole in ((1.0, True), (seated_build(run, TRIAL, magnify=1e4).magnify, True), (60.0, False)):
-        part = seated_build(run, TRIAL).meshes[0].driver
+    for magnify, whole in (
+        (1.0, True),
+        (seated_build(*build_of(run, TRIAL), magnify=1e4).magnify, True),
+        (60.0, False),
+    ):
+        part = seated_build(*build_of(run, TRIAL)).meshes[0].driver
         part = replace(part, flank_turn=magnify * part.flank_turn)
         display = display_mesh(part.gear, DISPLAY_DEFLECTION)
         moved = display.thickened(part.flank_turn)
@@ -675,19 +680,19 @@ def test_a_magnified_tip_keeps_its_points_in_their_order(run: Run) -> None:
 
 def test_no_magnification_at_all_is_the_nominal_build(run: Run) -> None:
     """Only the driver's position differs: nominal builds have the same backlash at any."""
-    none, nominal = seated_build(run, TRIAL, magnify=0.0), seated_build(run, "nominal")
+    none, nominal = seated_build(*build_of(run, TRIAL), magnify=0.0), seated_build(*build_of(run, "nominal"))
     assert none.meshes[0].gap_value == pytest.approx(nominal.meshes[0].gap_value, abs=1e-8)  # mm; where steps end
     assert none.label == f"trial-{TRIAL}-x0"
 
 
 def test_worst_is_the_trial_nearest_to_a_limit(run: Run) -> None:
     values = run.columns("geometric:free play")["geometric:free play"]
-    assert seated_build(run, "worst").label == f"trial-{np.argmin(values)}"
+    assert seated_build(*build_of(run, "worst")).label == f"trial-{np.argmin(values)}"
 
 
 def test_marks_lie_on_both_gears(run: Run) -> None:
     """Contact and gap ends are on the meshes' surfaces, within their chord errors."""
-    seated = seated_build(run, TRIAL).meshes[0]
+    seated = seated_build(*build_of(run, TRIAL)).meshes[0]
     within = 2e-3 * run.summary["chord_error_um"] + 2 * DISPLAY_DEFLECTION
     surfaces = []
     for part in (seated.driver, seated.driven):
@@ -727,7 +732,7 @@ def test_what_is_not_there_is_refused_in_words(run: Run, tmp_path: Path, which: 
 
 def test_magnify_must_be_a_number(run: Run) -> None:
     with pytest.raises(InputError, match="at least 0"):
-        seated_build(run, TRIAL, magnify=math.nan)
+        seated_build(*build_of(run, TRIAL), magnify=math.nan)
 
 
 def test_export_where_nothing_can_be_written_is_refused(run: Run, tmp_path: Path) -> None:
@@ -763,7 +768,7 @@ def test_a_window_without_a_display_is_refused(run: Run, monkeypatch: pytest.Mon
 
 def test_perturbed_gear_is_the_mesh_turned_flank_by_flank(run: Run) -> None:
     """A gear made with its deviation and growth has the flanks of the display mesh that was only turned and scaled."""
-    part = seated_build(run, TRIAL).meshes[0].driver
+    part = seated_build(*build_of(run, TRIAL)).meshes[0].driver
     at_origin = replace(part, world_from_gear=np.eye(4))
     vertices, _ = at_origin.mesh()
     gear = of_kind(SpurGear, part.perturbed)

@@ -21,6 +21,7 @@ from tol3d.gearing.shown.placed import DISPLAY_DEFLECTION
 from tol3d.gears import SpurGear
 from tol3d.report import export_run, view_run
 from tol3d.simulate import run_scene
+from tol3d.study.results.replaying import build_of
 
 TRIAL = 2
 DEG = math.pi / 180
@@ -73,7 +74,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 @pytest.fixture(scope="module")
 def train(run: Run) -> WholeTrain:
-    (train,) = whole_trains(seated_build(run, TRIAL))
+    (train,) = whole_trains(seated_build(*build_of(run, TRIAL)))
     return train
 
 
@@ -121,7 +122,7 @@ def test_a_gear_and_its_shaft_are_turned_alike(train: WholeTrain) -> None:
 
 def test_an_arm_stands_at_0_with_the_motor_and_keeps_its_place_on_its_shaft(run: Run, train: WholeTrain) -> None:
     """However the teeth lie to the shaft: they turn the flange by some angle before the motor has turned at all."""
-    (nominal,) = whole_trains(seated_build(run, "nominal"))
+    (nominal,) = whole_trains(seated_build(*build_of(run, "nominal")))
     seen = []
     for one in (nominal, train):
         poses = {body.name: body.world_from_part for body in one.bodies}
@@ -297,7 +298,7 @@ def test_wide_bores_are_filled_by_collars(tmp_path: Path) -> None:
         "teeth: 18, module: 1 mm, face_width: 6 mm", "teeth: 18, module: 1 mm, face_width: 6 mm, bore: 9 mm"),
         encoding="utf-8",
     )  # fmt: skip
-    (train,) = whole_trains(seated_build(run_scene(scene, out=tmp_path / "run"), "nominal"))
+    (train,) = whole_trains(seated_build(*build_of(run_scene(scene, out=tmp_path / "run"), "nominal")))
     shape = of_kind(ShaftBody, next(body.shape for body in train.bodies if body.name == "input"))
     assert (shape.diameter, shape.start) == (6.0, -8.0)
     assert shape.collars == ((9.0, 2.0, 8.0),)
@@ -366,7 +367,7 @@ study: {trials: 2, seed: 5}
 def test_a_train_of_reducers_alone_is_exported_and_seen_without_a_close_up(tmp_path: Path) -> None:
     (tmp_path / "reducers.yaml").write_text(REDUCERS, encoding="utf-8")
     run = run_scene(tmp_path / "reducers.yaml", out=tmp_path / "run")
-    (train,) = whole_trains(seated_build(run, "nominal"))
+    (train,) = whole_trains(seated_build(*build_of(run, "nominal")))
     reach = {name: heights(train, name) for name in ("motor", "first", "middle", "second", "flange")}
     behind = list(reach.values())
     for (_, end), (begin, _) in pairwise(behind):  # one behind the other along the one axis

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from tol3d.report.histogram import draw_histogram
     from tol3d.report.html.blocks import page_html
     from tol3d.report.html.document import report_html
+    from tol3d.report.html.view_model import ViewModel
     from tol3d.report.measure_charts import spanned
     from tol3d.report.measure_table import CONVERTED_ROWS
     from tol3d.report.number import (
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
         tip_mm,
         value_text,
     )
+    from tol3d.report.presenter import display_build
     from tol3d.report.published import STATISTICS
     from tol3d.report.table import run_report
     from tol3d.report.view import view_run
@@ -45,10 +47,12 @@ _HOMES = {
     "CONVERTED_ROWS": "tol3d.report.measure_table",
     "NOTHING": "tol3d.report.number",
     "STATISTICS": "tol3d.report.published",
+    "ViewModel": "tol3d.report.html.view_model",
     "charts_figure": "tol3d.report.chart_figure",
     "check_report": "tol3d.report.check",
     "comparison_report": "tol3d.report.compare",
     "declared_table": "tol3d.report.declared",
+    "display_build": "tol3d.report.presenter",
     "draw_comparison": "tol3d.report.comparison_picture",
     "draw_histogram": "tol3d.report.histogram",
     "export_run": "tol3d.report.export",
@@ -71,10 +75,12 @@ __all__ = [
     "CONVERTED_ROWS",
     "NOTHING",
     "STATISTICS",
+    "ViewModel",
     "charts_figure",
     "check_report",
     "comparison_report",
     "declared_table",
+    "display_build",
     "draw_comparison",
     "draw_histogram",
     "export_run",

@@ -30,6 +30,8 @@ class Body:
         details: a closed triangle mesh in its own frame, shown in pictures on it or within it but not exported.
         painted: "#RRGGBB" of each triangle of its surface that has a colour of its own, empty of the others; made when
             asked for. None: none has.
+        features: names of the part's features with the number of triangles that each has; in their order these are the
+            last of its surface and details together. Made when asked for. None: none are told apart.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Body:
     opacity: float = 1.0
     details: Callable[[], Surface] | None = None
     painted: Callable[[], Sequence[str]] | None = None
+    features: Callable[[], Mapping[str, int]] | None = None
 
     @cached_property
     def paint(self) -> Sequence[str]:
@@ -70,6 +73,7 @@ class Body:
                     colour=colour,
                     details=self.details if whole else None,
                     painted=None,
+                    features=self.features if whole else None,
                 )
             )
         return tuple(found)

@@ -1,10 +1,11 @@
 """Presentation of a kind of system, in addition to that of every run."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
+from typing import TYPE_CHECKING, Final, Protocol, cast, runtime_checkable
 
 from tol3d.errors import InputError
 from tol3d.report.page import PageItem
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from tol3d.study.runs.summary.run import RunSummary
     from tol3d.study.trials.simulation import Simulation
 
+REPLAYING: Final = "tol3d.study.results.replaying"  # loads what simulates, which tables do without
 SYSTEM_CHECK = "tol3d.report.system_check"  # loads distributions, and so scipy, which pictures do without
 
 Which = int | str
@@ -129,6 +131,36 @@ class Presenter(Protocol):
         ...
 
 
+class ShowsBuilds(ABC):
+    """The part of a presenter that shows a build of a run and a trial that was replayed in one way.
+
+    A presenter that magnifies deviations only as far as a build allows, or that says so in its label or its notes, has
+    this base; those of others are magnified before they are replayed.
+    """
+
+    @abstractmethod
+    def shown(self, build: "Replay", label: str, *, magnify: float) -> Display:
+        """A build under a label.
+
+        Args:
+            build: as it was simulated, without magnification.
+            label: such as "trial-17", usable as the start of a file's name.
+            magnify: see Presenter.display.
+
+        Raises:
+            InputError, RunError: it cannot be shown.
+        """
+
+    def display(self, run: "Run", which: Which, *, magnify: float) -> Display:
+        """A build of a run, simulated again; see Presenter."""
+        build, label = import_module(REPLAYING).build_of(run, which)
+        return self.shown(build, label, magnify=magnify)
+
+    def replayed(self, replay: "Replay", label: str) -> Display:
+        """A trial that was replayed; see Presenter."""
+        return self.shown(replay, label, magnify=1.0)
+
+
 @runtime_checkable
 class ShowsNotes(Protocol):
     """A presenter with words that belong below the first tables of a run, such as what a negative mean is."""
@@ -180,6 +212,23 @@ def presenter_of(run: "RunSummary", path: str | None = None) -> Presenter:
     own = run.presenters.get(run.mechanism.name, "") if run.mechanism else ""
     of_measures = (measure.presenter for measure in run.measures.values() if measure.presenter)
     return presenter_at(own or next(of_measures, ""))
+
+
+def display_build(build: "Replay", label: str, *, magnify: float = 1.0) -> Display:
+    """A build as its system's presenter shows it; a run is not needed.
+
+    Args:
+        build: what `tol3d.simulate.replayed` makes of a simulation, deviations and positions.
+        label: such as "nominal" or "trial-17", usable as the start of a file's name.
+        magnify: scales every deviation; lowered to what the build allows, as a note then says.
+
+    Raises:
+        InputError, RunError: it cannot be shown.
+    """
+    presenter = presenter_at(build.simulation.presenter)
+    if isinstance(presenter, ShowsBuilds):
+        return presenter.shown(build, label, magnify=magnify)
+    return presenter.replayed(import_module(REPLAYING).enlarged(build, magnify), label)
 
 
 def require_bodies(display: Display) -> None:

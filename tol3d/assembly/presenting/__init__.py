@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
+from tol3d.report.presenter import ShowsBuilds
 from tol3d.study.runs.summary.measure import MeasureSummary
 from tol3d.study.runs.summary.run import RunSummary
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from tol3d.study.trials.simulation import Simulation
 
 
-class AssemblyPresenter:
+class AssemblyPresenter(ShowsBuilds):
     """The presenter of assemblies; see `tol3d.report.presenter.Presenter`."""
 
     def pictures(self, summary: RunSummary) -> "Mapping[str, Draw]":
@@ -56,12 +57,12 @@ class AssemblyPresenter:
         return _lazily("tables").workspace(simulation, measure, activity)  # type: ignore[no-any-return]
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
-        """A build with its parts placed again."""
+        """A build of a run; the worst of those that could be assembled, if no other can be shown."""
         return _lazily("shown_assembly").display(run, which, magnify=magnify)  # type: ignore[no-any-return]
 
-    def replayed(self, replay: "Replay", label: str) -> "Display":
-        """A trial that was replayed."""
-        return _lazily("shown_assembly").replayed_display(replay, label)  # type: ignore[no-any-return]
+    def shown(self, build: "Replay", label: str, *, magnify: float) -> "Display":
+        """A build with its parts placed again, its deviations magnified as far as it can be assembled."""
+        return _lazily("shown_assembly").shown(build, label, magnify=magnify)  # type: ignore[no-any-return]
 
 
 def _lazily(module: str) -> Any:

@@ -10,17 +10,23 @@ import numpy as np
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.posed import PosedSystem
-from tol3d.assembly.presenting.symbols import joined_symbols, labels, marks_on_solid, unnamed
+from tol3d.assembly.presenting.symbols import (
+    joined_symbols,
+    labels,
+    mark_counts,
+    marks_on_solid,
+    symbol_counts,
+    unnamed,
+)
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError, RunError
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, World, built_body
 from tol3d.report.motion import Frame, Motion, Shot, around, corner
 from tol3d.report.presenter import View, Which
-from tol3d.study.results.replaying import Replay, replay, replayed, simulation_again
+from tol3d.study.results.replaying import Replay, build_of, enlarged
 from tol3d.study.runs.run import Run
 from tol3d.study.runs.worst import worst_trial
-from tol3d.study.system.stated import magnified, mean_build, nominal_build
 
 COLOURS: Final = ("#4682B4", "#CD853F", "#6B8E23", "#B22222", "#8470FF", "#2F8F8F", "#C71585", "#708090")
 THIN: Final = 1 / 120
@@ -151,61 +157,47 @@ class ShownAssembly:
 
 
 def display(run: Run, which: Which, *, magnify: float) -> ShownAssembly:
-    """A build of a run; its deviations magnified and its parts placed by them.
+    """A build of a run; for the worst that cannot be assembled the worst of the others, as a note then says.
 
     Raises:
         RunError: it could not be assembled.
     """
-    trial = worst_trial(run) if which == "worst" else which
+    seen, label = build_of(run, which)
     notes: tuple[str, ...] = ()
-    if isinstance(trial, int):
-        seen = replay(run, trial)
-        if which == "worst" and placed_by(seen) is None:
-            failed, trial = trial, worst_trial(run, seated_only=True)
-            words = f"trial {failed} is worse, and cannot be shown: {seen.status}"
-            notes = (f"{words}; trial {trial} is the worst of those that could be assembled",)
-            seen = replay(run, trial)
-    else:
-        simulation = simulation_again(run)
-        system = simulation.system
-        seen = replayed(
-            simulation, nominal_build(system) if trial == "nominal" else mean_build(system, system.measures[0])
-        )
-    label = f"trial-{trial}" if isinstance(trial, int) else str(trial)
-    if magnify == 1.0:
-        return replayed_display(seen, label, notes)
-    large, used = _as_large(seen, magnify)
-    beyond = "" if used == magnify else f", not {magnify:g}: beyond that they cannot be assembled"
-    notes += (f"deviations {used:.3g} times as large{beyond}; parts are placed by them",)
-    return replayed_display(large, label, notes)
+    if which == "worst" and placed_by(seen) is None:
+        other = worst_trial(run, seated_only=True)
+        words = f"{label.replace('-', ' ')} is worse, and cannot be shown: {seen.status}"
+        notes = (f"{words}; trial {other} is the worst of those that could be assembled",)
+        seen, label = build_of(run, other)
+    return shown(seen, label, magnify=magnify, notes=notes)
+
+
+def shown(seen: Replay, label: str, *, magnify: float, notes: tuple[str, ...] = ()) -> ShownAssembly:
+    """A build that was replayed; its deviations magnified and its parts placed by them.
+
+    Raises:
+        RunError: it could not be assembled.
+    """
+    if magnify != 1.0:
+        seen, used = _as_large(seen, magnify)
+        beyond = "" if used == magnify else f", not {magnify:g}: beyond that they cannot be assembled"
+        notes += (f"deviations {used:.3g} times as large{beyond}; parts are placed by them",)
+    placed = placed_by(seen)
+    if placed is None:
+        raise RunError(f"{label}: cannot be shown: {seen.status}; take another trial, or smaller deviations")
+    return ShownAssembly(label, placed, (*notes, *([RIGID] if placed.has_solids else [])), seen)
 
 
 def _as_large(seen: Replay, wanted: float) -> tuple[Replay, float]:
     """A build with its deviations magnified as far as it can still be assembled, up to a factor, and that factor."""
-
-    def times(factor: float) -> Replay:
-        return replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, factor))
-
-    large = times(wanted)
+    large = enlarged(seen, wanted)
     if placed_by(large) is not None or wanted < 1.0 or placed_by(seen) is None:
         return large, wanted
     low, high = 1.0, wanted
     for _ in range(HALVINGS):
         middle = (low + high) / 2
-        low, high = (middle, high) if placed_by(times(middle)) is not None else (low, middle)
-    return times(low), low
-
-
-def replayed_display(seen: Replay, label: str, notes: tuple[str, ...] = ()) -> ShownAssembly:
-    """A trial that was replayed.
-
-    Raises:
-        RunError: it could not be assembled.
-    """
-    placed = placed_by(seen)
-    if placed is None:
-        raise RunError(f"{label}: cannot be shown: {seen.status}; take another trial, or smaller deviations")
-    return ShownAssembly(label, placed, (*notes, *([RIGID] if placed.has_solids else [])), seen)
+        low, high = (middle, high) if placed_by(enlarged(seen, middle)) is not None else (low, middle)
+    return enlarged(seen, low), low
 
 
 def placed_by(seen: Replay) -> Placed | None:
@@ -242,11 +234,14 @@ def bodies(placed: Placed, colours: Sequence[str] = COLOURS) -> tuple[Body, ...]
         named = [(feature, frames[feature.name]) for feature in part.features if feature.is_named]
         if part.solid is None:
             surface = partial(joined_symbols, tuple(named), thickness)
-            found.append(Body(part.name, np.eye(4), surface, None, colour))
+            counts = partial(symbol_counts, tuple(named), thickness)
+            found.append(Body(part.name, np.eye(4), surface, None, colour, features=counts))
             continue
         pose = placed.poses[part.name]
         own_frames = [(own, np.linalg.inv(pose) @ frame) for own, frame in named]
         body = built_body(part.name, part.solid, pose, colour, deflection=DEFLECTION)
-        details = partial(marks_on_solid, tuple(own_frames), thickness) if own_frames else None
-        found.append(replace(body, opacity=OPACITY, details=details))
+        if own_frames:
+            details = partial(marks_on_solid, tuple(own_frames), thickness)
+            body = replace(body, details=details, features=partial(mark_counts, tuple(own_frames), thickness))
+        found.append(replace(body, opacity=OPACITY))
     return tuple(found)

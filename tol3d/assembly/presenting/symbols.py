@@ -279,6 +279,16 @@ def marks_on_solid(features: Framed, thickness: float) -> Surface:
     return together([_moved(mark(own.shape, thickness), frame) for own, frame in features])
 
 
+def symbol_counts(features: Framed, thickness: float) -> Mapping[str, int]:
+    """Triangles of each feature in `joined_symbols`, where they come last."""
+    return {own.name: len(symbol(own.shape, thickness)[1]) for own, _ in features}
+
+
+def mark_counts(features: Framed, thickness: float) -> Mapping[str, int]:
+    """Triangles of each feature in `marks_on_solid`."""
+    return {own.name: len(mark(own.shape, thickness)[1]) for own, _ in features}
+
+
 def _moved(surface: Surface, frame: Array) -> Surface:
     vertices, triangles = surface
     return vertices @ frame[:3, :3].T + frame[:3, 3], triangles

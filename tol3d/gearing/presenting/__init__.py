@@ -7,20 +7,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from tol3d.gearing.summary.types import TrainsOfRun
+from tol3d.report.presenter import ShowsBuilds
 from tol3d.study.runs.summary.measure import MeasureSummary
 from tol3d.study.runs.summary.run import RunSummary
 
 if TYPE_CHECKING:
     from tol3d.report.page import PageItem
-    from tol3d.report.presenter import Display, Draw, FurtherRow, Which
+    from tol3d.report.presenter import Display, Draw, FurtherRow
     from tol3d.study.results.replaying import Replay
-    from tol3d.study.runs.run import Run
     from tol3d.study.trials.simulation import Simulation
 
 DISPLAY: Final = "tol3d.gearing.shown.display"
 
 
-class GearPresenter:
+class GearPresenter(ShowsBuilds):
     """The presenter of gears; see `tol3d.report.presenter.Presenter`."""
 
     def pictures(self, summary: RunSummary) -> "Mapping[str, Draw]":
@@ -44,15 +44,10 @@ class GearPresenter:
         """Gears, meshes, trains, measures, and contributors with their coefficients."""
         return _lazily("scene_check").check_blocks(simulation)  # type: ignore[no-any-return]
 
-    def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
-        """A build with its gears seated again."""
-        build = import_module(DISPLAY).seated_build(run, which, magnify=magnify)
-        return _lazily("shown_train").shown_build(build)  # type: ignore[no-any-return]
-
-    def replayed(self, replay: "Replay", label: str) -> "Display":
-        """A trial that was replayed, its gears seated again."""
-        build = import_module(DISPLAY).replayed_build(replay, label)
-        return _lazily("shown_train").shown_build(build)  # type: ignore[no-any-return]
+    def shown(self, build: "Replay", label: str, *, magnify: float) -> "Display":
+        """A build with its gears seated again, its deviations magnified as far as the teeth allow."""
+        seated = import_module(DISPLAY).seated_build(build, label, magnify=magnify)
+        return _lazily("shown_train").shown_build(seated)  # type: ignore[no-any-return]
 
 
 def _draw_chain(summary: RunSummary, train: str, path: Path) -> None:

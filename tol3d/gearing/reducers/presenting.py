@@ -13,9 +13,8 @@ if TYPE_CHECKING:
     from tol3d.gearing.presenting.shown_train import ShownLink
     from tol3d.numerics.arrays import Array
     from tol3d.report.page import PageItem
-    from tol3d.report.presenter import Display, Which
+    from tol3d.report.presenter import Display
     from tol3d.study.results.replaying import Replay
-    from tol3d.study.runs.run import Run
     from tol3d.study.runs.summary.run import RunSummary
     from tol3d.study.system.contributor import Contributor
     from tol3d.study.trials.simulation import Simulation
@@ -43,14 +42,10 @@ class ReducerPresenter(GearPresenter):
         blocks = import_module(self.tables).blocks(system, system.contributors)
         return (*blocks, *import_module(SYSTEM_CHECK).system_blocks(simulation))
 
-    def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
+    def shown(self, build: "Replay", label: str, *, magnify: float) -> "Display":
         """A build with its parts in contact again."""
-        label, seen, notes = import_module(DISPLAY).magnified_of(run, which, magnify)
+        seen, label, notes = import_module(DISPLAY).magnified_build(build, label, magnify)
         return import_module(self.builds).display_of(label, seen.build, notes)  # type: ignore[no-any-return]
-
-    def replayed(self, replay: "Replay", label: str) -> "Display":
-        """A trial that was replayed."""
-        return import_module(self.builds).display_of(label, replay.build, ())  # type: ignore[no-any-return]
 
     def link_blocks(self, link: "StatedLink", contributors: "Sequence[Contributor]") -> "Sequence[PageItem]":
         """Data of a reducer in a train."""

@@ -16,11 +16,7 @@ from tol3d.gearing.play.play import SeatKey, seat_keys
 from tol3d.gearing.shown.placed import PlacedGear, SeatedMesh, allowed_factor
 from tol3d.gearing.system import gears_in
 from tol3d.numerics.arrays import Array
-from tol3d.report.presenter import Which
-from tol3d.study.results.replaying import Replay, replay, replayed, simulation_again
-from tol3d.study.runs.run import Run
-from tol3d.study.runs.worst import worst_trial
-from tol3d.study.system.stated import magnified, mean_build, nominal_build
+from tol3d.study.results.replaying import Replay, enlarged
 
 Side = Literal["drive", "back"]
 """Flanks on which meshes rest: those that the first shaft pushes with, or the others."""
@@ -49,81 +45,53 @@ class SeatedBuild:
     seen: Replay
 
 
-def seated_build(run: Run, which: Which, *, magnify: float = 1.0) -> SeatedBuild:
-    """A build of a run, seated again.
+def seated_build(seen: Replay, label: str, *, magnify: float = 1.0) -> SeatedBuild:
+    """A build that was replayed, seated again, under a label.
 
     Args:
-        which: a trial, or "worst", "nominal", "mean".
+        seen: the build.
+        label: see SeatedBuild.
         magnify: scales every deviation; lowered where the teeth would not seat, their gap would leave
             the tooth space or a tip would fold, as a note then says.
 
     Raises:
-        InputError: no such build, or one without contact.
+        InputError: no such factor. RunError: its working flanks found no contact.
     """
-    if not (math.isfinite(magnify) and magnify >= 0.0):
-        raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
-    label, seen = replayed_of(run, which)
-    plain = replayed_build(seen, label)
-    if magnify == 1.0:
-        return plain
+    require_factor(magnify)
     rows = _rows(seen)
-    used, note = allowed_factor(lambda factor: _seated(_scaled(seen, factor), rows), magnify)
-    again = _scaled(seen, used)
-    label += f"-x{used:g}" if used != 1.0 else ""
-    return SeatedBuild(_model(seen), label, used, _seated(again, rows), again.geometric, (*plain.notes, note), again)
-
-
-def replayed_build(seen: Replay, label: str) -> SeatedBuild:
-    """A build that was replayed, seated again, under a label.
-
-    Raises:
-        RunError: its working flanks found no contact.
-    """
-    meshes = _seated(seen, _rows(seen))
+    meshes = _seated(seen, rows)
     for seat in meshes:
         if seat.status == NO_CONTACT:
             raise RunError(f"{label}: the working flanks of {seat.mesh.name} found no contact; choose another build")
-    failed = () if seen.status == "ok" else (f"{label}: {seen.status}; shown where its working flanks touch",)
-    return SeatedBuild(_model(seen), label, 1.0, meshes, seen.geometric, failed, seen)
+    notes = () if seen.status == "ok" else (f"{label}: {seen.status}; shown where its working flanks touch",)
+    if magnify == 1.0:
+        return SeatedBuild(_model(seen), label, 1.0, meshes, seen.geometric, notes, seen)
+    used, note = allowed_factor(lambda factor: _seated(enlarged(seen, factor), rows), magnify)
+    again = enlarged(seen, used)
+    label += f"-x{used:g}" if used != 1.0 else ""
+    return SeatedBuild(_model(seen), label, used, _seated(again, rows), again.geometric, (*notes, note), again)
 
 
-def replayed_of(run: Run, which: Which) -> tuple[str, Replay]:
-    """A build of a run again, with its label.
+def magnified_build(seen: Replay, label: str, magnify: float) -> tuple[Replay, str, tuple[str, ...]]:
+    """A build with its deviations magnified, its label, and notes.
 
     Raises:
-        InputError: no such build.
+        InputError: no such factor.
     """
-    if which == "worst":
-        which = worst_trial(run)
-    if isinstance(which, int):
-        return f"trial-{which}", replay(run, which)
-    if which not in ("nominal", "mean"):
-        raise InputError(f"expected a trial's number, worst, nominal or mean, got {which!r}")
-    simulation = simulation_again(run)
-    system = simulation.system
-    build = nominal_build(system) if which == "nominal" else mean_build(system, system.measures[0])
-    return which, replayed(simulation, build)
+    require_factor(magnify)
+    if magnify == 1.0:
+        return seen, label, ()
+    return enlarged(seen, magnify), f"{label}-x{magnify:g}", (f"deviations magnified {magnify:g} times",)
 
 
-def magnified_of(run: Run, which: Which, magnify: float) -> tuple[str, Replay, tuple[str, ...]]:
-    """The same with its deviations magnified, its label, and notes.
+def require_factor(magnify: float) -> None:
+    """Refuse a factor of deviations that is no number of at least 0.
 
     Raises:
-        InputError: no such build, or no such factor.
+        InputError: it is none.
     """
     if not (math.isfinite(magnify) and magnify >= 0.0):
         raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
-    label, seen = replayed_of(run, which)
-    if magnify == 1.0:
-        return label, seen, ()
-    return f"{label}-x{magnify:g}", _scaled(seen, magnify), (f"deviations magnified {magnify:g} times",)
-
-
-def _scaled(seen: Replay, factor: float) -> Replay:
-    """The build with its deviations multiplied by a factor."""
-    if factor == 1.0:
-        return seen
-    return replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, factor))
 
 
 def _model(seen: Replay) -> Model:

@@ -6,22 +6,21 @@ import json
 import re
 import tempfile
 from collections.abc import Iterator, Sequence, Set
-from dataclasses import asdict, dataclass, field, replace
 from io import BytesIO
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import Final
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
 from tol3d.errors import Tol3dError
 from tol3d.numerics.arrays import Array
-from tol3d.report.body import Body, Surface, World
+from tol3d.report.body import Surface
 from tol3d.report.drawn_solids import poly_data
 from tol3d.report.heading import shown_measures
 from tol3d.report.html.blocks import Markup, tag
+from tol3d.report.html.view_model import ViewModel
 from tol3d.report.number import measured_text
 from tol3d.report.presenter import Display, Presenter, Which
 from tol3d.report.shown_unit import shown_run
@@ -40,68 +39,8 @@ FEWEST_FACETS: Final = 1000
 MOST_TRIES: Final = 4
 LEAST_LEFT: Final = 0.02
 """Share of a mesh's triangles that is left at least."""
-ALIKE: Final = 2e-3
-"""Fraction of a part's size: shapes that differ by less are drawn as one, at their best fit."""
 TRIAL: Final = re.compile(r"trial-(\d+)")
 STILL_WIDTH, STILL_QUALITY = 1100, 80
-GRID: Final = 2.0**-13
-"""mm; places of corners are rounded to it, an eighth of a micrometre, so that they pack."""
-
-
-@dataclass(frozen=True, eq=False)
-class _State:
-    """A build as it is shown.
-
-    Args:
-        words: its measures, and notes.
-        meshes, poses: of each part, which of the model's meshes, and where (16 numbers, column by column) [mm].
-        names: of contacts, gaps and other places (3 numbers) [mm].
-    """
-
-    words: str
-    meshes: tuple[int, ...]
-    poses: tuple[list[float], ...]
-    names: dict[str, list[float]]
-
-
-@dataclass(eq=False)
-class _Model:
-    """Triangles by what they hold, each set once."""
-
-    surfaces: list[Surface] = field(default_factory=list)
-    of_parts: dict[str, list[int]] = field(default_factory=dict)
-
-    def place(self, name: str, surface: Surface) -> tuple[int, Array]:
-        """Index of a part's mesh, and its pose on the part (4, 4)."""
-        vertices, triangles = surface
-        for mesh in self.of_parts.setdefault(name, []):
-            known, alike = self.surfaces[mesh]
-            if known.shape == vertices.shape and np.array_equal(alike, triangles):
-                pose = laid_on(known, vertices)
-                left = vertices - (known @ pose[:3, :3].T + pose[:3, 3])
-                if float(np.abs(left).max()) <= ALIKE * float(np.ptp(vertices, axis=0).max()):
-                    return mesh, pose
-        self.of_parts[name].append(len(self.surfaces))
-        self.surfaces.append((np.round(np.asarray(vertices, dtype=np.float64) / GRID) * GRID, triangles))
-        return len(self.surfaces) - 1, np.eye(4)
-
-    def packed(self) -> bytes:
-        """The model as a GLB, packed the same way every time."""
-        scene = trimesh.Scene()
-        for number, (vertices, triangles) in enumerate(self.surfaces):
-            mesh = trimesh.Trimesh(vertices, triangles, process=False)
-            scene.add_geometry(mesh, node_name=f"mesh-{number}", geom_name=f"mesh-{number}")
-        return gzip.compress(cast(bytes, scene.export(file_type="glb")), 9, mtime=0)
-
-
-def laid_on(points: Array, others: Array) -> Array:
-    """The pose (4, 4) that lays points (n, 3) best on others, by least squares (Kabsch 1976)."""
-    middle, there = points.mean(axis=0), others.mean(axis=0)
-    left, _, right = np.linalg.svd((points - middle).T @ (others - there))
-    turn = (left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right).T
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = turn, there - turn @ middle
-    return pose
 
 
 def view_3d(run: Run, presenter: Presenter, trials: Sequence[int] = ()) -> Markup:
@@ -113,50 +52,32 @@ def view_3d(run: Run, presenter: Presenter, trials: Sequence[int] = ()) -> Marku
         trials: which are shown besides.
     """
     wanted: list[Which] = ["nominal", *(["worst"] if run.keeps_trials else []), *trials]
-    model, world = _Model(), None
-    builds = list[tuple[str, list[_State]]]()
+    model = ViewModel()
     for which in wanted:
         try:
-            states, world = _states(run, presenter, which, model, world)
+            model.add(_called(which), _displays(run, presenter, which))
         except Tol3dError as error:
-            if not builds:
+            if not model.builds:
                 return tag("p", f"no 3D view: {error}", class_="note")
-            continue
-        builds.append((_called(which), states))
-    assert world is not None, "the nominal build has one"
-    packed, nominal = model.packed(), tuple[str, ...]()
+    packed, nominal = _packed(model), tuple[str, ...]()
     if len(packed) > LARGEST:
-        builds, model, nominal = _undeviated(builds, model, world)
-        packed = model.packed()
+        model, nominal = model.undeviated()
+        packed = _packed(model)
     model, packed, coarser = _within(model, packed)
-    notes = _notes(builds, world, nominal, coarser)
-    return _figure(world, builds, packed, _still(run), notes)
+    return _figure(model, packed, _still(run), _notes(model, nominal, coarser))
 
 
-def _states(
-    run: Run, presenter: Presenter, which: Which, model: _Model, shown: World | None
-) -> tuple[list[_State], World]:
-    """A build at every magnification, of its world that shows the most."""
-    found = list[_State]()
+def _displays(run: Run, presenter: Presenter, which: Which) -> Iterator[tuple[float, Display, str]]:
+    """A build at every magnification, with its words."""
     for factor in (1.0,) if which == "nominal" else FACTORS:
         display = presenter.display(run, which, magnify=factor)
-        world = _world_of(display, shown)
-        if world is not None:
-            world = replace(world, bodies=tuple(piece for body in world.bodies for piece in body.pieces))
-        shown = shown or world
-        if shown is None or world is None:
-            continue
-        placed = [model.place(body.name, _surface(body)) for body in world.bodies]
-        poses = tuple(_pose(body, on) for body, (_, on) in zip(world.bodies, placed, strict=True))
         measured = _measured(run, which, display.label) if factor == FACTORS[0] else display.label
-        words = "; ".join((measured, *display.notes))
-        names = {
-            name: [float(f"{own:.9g}") for own in place] for name, place in {**world.points, **world.marks}.items()
-        }
-        found.append(_State(words, tuple(mesh for mesh, _ in placed), poses, names))
-    if shown is None or not found:
-        raise Tol3dError(f"{which}: there is nothing to show in 3D")
-    return found, shown
+        yield factor, display, "; ".join((measured, *display.notes))
+
+
+def _packed(model: ViewModel) -> bytes:
+    """The model as a GLB, packed the same way every time."""
+    return gzip.compress(model.glb(), 9, mtime=0)
 
 
 def _measured(run: Run, which: Which, label: str) -> str:
@@ -178,47 +99,11 @@ def _measured(run: Run, which: Which, label: str) -> str:
     return f"{label}: {', '.join(told)}" if told else label
 
 
-def _world_of(display: Display, shown: World | None) -> World | None:
-    """The world with the most bodies, or the one of that name."""
-    worlds = [world for world in display.worlds if world.bodies and (shown is None or world.name == shown.name)]
-    return max(worlds, key=lambda own: len(own.bodies), default=None)
-
-
-def _surface(body: Body) -> Surface:
-    surface = body.surface()
-    if body.details is None:
-        return surface
-    (vertices, triangles), (more, further) = surface, body.details()
-    return np.vstack([vertices, more]), np.vstack([triangles, further + len(vertices)])
-
-
-def _pose(body: Body, on_part: Array) -> list[float]:
-    """Matrix of a part's mesh that lies so on it, with the growth in it; column by column."""
-    grown = np.array(body.world_from_part, dtype=np.float64)
-    grown[:3, :3] *= body.scale
-    pose = grown @ on_part
-    return [float(f"{value:.12g}") for value in pose.T.ravel()]
-
-
 def _called(which: Which) -> str:
     return which if isinstance(which, str) else f"trial {which}"
 
 
-def _undeviated(
-    builds: Sequence[tuple[str, list[_State]]], model: _Model, world: World
-) -> tuple[list[tuple[str, list[_State]]], _Model, tuple[str, ...]]:
-    """The same with every part nominal, and the parts that differ from their build."""
-    nominal = builds[0][1][0].meshes
-    deviate = {
-        k for _, states in builds for state in states for k, mesh in enumerate(state.meshes) if mesh != nominal[k]
-    }
-    fewer = _Model([model.surfaces[mesh] for mesh in nominal])
-    places = tuple(range(len(nominal)))
-    kept = [(name, [replace(state, meshes=places) for state in states]) for name, states in builds]
-    return kept, fewer, tuple(world.bodies[k].name for k in sorted(deviate))
-
-
-def _within(model: _Model, packed: bytes) -> tuple[_Model, bytes, frozenset[int]]:
+def _within(model: ViewModel, packed: bytes) -> tuple[ViewModel, bytes, frozenset[int]]:
     """The model with as few triangles as make it small enough, packed; and which of its meshes are coarser."""
     coarser = frozenset[int]()
     for _ in range(MOST_TRIES):
@@ -227,9 +112,10 @@ def _within(model: _Model, packed: bytes) -> tuple[_Model, bytes, frozenset[int]
             break
         left = max(0.8 * MOST / len(packed), LEAST_LEFT)
         coarser |= set(large)
-        surfaces = [fewer_facets(*own, left) if k in coarser else own for k, own in enumerate(model.surfaces)]
-        model = _Model(surfaces)
-        packed = model.packed()
+        model = model.remeshed(
+            [fewer_facets(*own, left) if k in coarser else own for k, own in enumerate(model.surfaces)]
+        )
+        packed = _packed(model)
     return model, packed, coarser
 
 
@@ -240,12 +126,11 @@ def fewer_facets(vertices: Array, triangles: NDArray[np.int64], left: float) -> 
     return np.asarray(found.points, dtype=np.float64), found.regular_faces
 
 
-def _notes(
-    builds: Sequence[tuple[str, list[_State]]], world: World, nominal: Sequence[str], coarser: Set[int]
-) -> list[str]:
+def _notes(model: ViewModel, nominal: Sequence[str], coarser: Set[int]) -> list[str]:
     """Notes on differences between the picture and the build."""
-    rough = {k for _, states in builds for state in states for k, mesh in enumerate(state.meshes) if mesh in coarser}
-    named = ", ".join(world.bodies[k].name for k in sorted(rough))
+    states = [state for build in model.builds for state in build.states]
+    rough = {k for state in states for k, mesh in enumerate(state.meshes) if mesh in coarser}
+    named = ", ".join(model.parts[k].name for k in sorted(rough))
     notes = [f"shown nominal: {', '.join(nominal)}"] if nominal else []
     return [*notes, *([f"coarser facets, for the size of this page: {named}"] if named else [])]
 
@@ -266,24 +151,13 @@ def _still(run: Run) -> str:
         return base64.b64encode(picture.getvalue()).decode()
 
 
-def _figure(
-    world: World,
-    builds: Sequence[tuple[str, list[_State]]],
-    packed: bytes,
-    still: str,
-    notes: Sequence[str],
-) -> Markup:
-    told: dict[str, Any] = {
-        "up": list(world.up),
-        "parts": [{"colour": body.colour, "opacity": body.opacity} for body in world.bodies],
-        "builds": [{"states": [asdict(state) for state in states]} for _, states in builds],
-    }
-    data = json.dumps(told, sort_keys=True, separators=(",", ":")).replace("<", "\\u003c")
+def _figure(model: ViewModel, packed: bytes, still: str, notes: Sequence[str]) -> Markup:
+    data = json.dumps(model.told(), sort_keys=True, separators=(",", ":")).replace("<", "\\u003c")
     picture = tag("img", src=f"data:image/jpeg;base64,{still}", alt="the parts, as tol3d view shows them")
     return tag(
         "figure",
         tag("div", tag("canvas"), picture if still else None, class_="stage"),
-        *_controls(world, builds),
+        *_controls(model),
         tag("p", class_="state note"),
         *(tag("p", note, class_="note") for note in notes),
         tag("script", Markup(data), type="application/json", id="view-data"),
@@ -292,10 +166,10 @@ def _figure(
     )
 
 
-def _controls(world: World, builds: Sequence[tuple[str, list[_State]]]) -> Iterator[Markup]:
-    options = (tag("option", name, value=number) for number, (name, _) in enumerate(builds))
+def _controls(model: ViewModel) -> Iterator[Markup]:
+    options = (tag("option", own.name, value=number) for number, own in enumerate(model.builds))
     slider = tag("input", type="range", name_="factor", min=0, max=len(FACTORS) - 1, value=0, step=1)
-    number = tag("output", f"{FACTORS[0]:g}", data_factors=" ".join(f"{own:g}" for own in FACTORS))
+    number = tag("output", f"{FACTORS[0]:g}", name_="times")
     yield tag(
         "div",
         tag("label", "build ", tag("select", *options, name_="build")),
@@ -307,6 +181,6 @@ def _controls(world: World, builds: Sequence[tuple[str, list[_State]]]) -> Itera
     )
     boxes = (
         tag("label", tag("input", type="checkbox", name_="part", value=k, checked=""), f" {own.name}")
-        for k, own in enumerate(world.bodies)
+        for k, own in enumerate(model.parts)
     )
     yield tag("details", tag("summary", "parts"), tag("div", *boxes, class_="controls"), open="")

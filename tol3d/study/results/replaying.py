@@ -13,9 +13,11 @@ from tol3d.study.results.task import materials_of, method_of
 from tol3d.study.results.versions import installed_versions
 from tol3d.study.runs.manifest import differences
 from tol3d.study.runs.run import Run, open_run
+from tol3d.study.runs.worst import worst_trial
 from tol3d.study.system.faults import faults_of
 from tol3d.study.system.method import ANALYTIC_METHOD
 from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC, value_column
+from tol3d.study.system.stated import magnified, mean_build, nominal_build
 from tol3d.study.system.trials import Trials
 from tol3d.study.trials.columns import columns_of
 from tol3d.study.trials.draws import drawn
@@ -81,6 +83,34 @@ def replay(run: Run | Path | str, trial: int, kinds: Kinds | None = None) -> Rep
         words = f"{run.path}: made elsewhere ({'; '.join(found)}), so its trials again differ by rounding"
         warnings.warn(words, ElsewhereWarning, stacklevel=2)
     return replayed(simulation, drawn(simulation, trial, 1))
+
+
+def build_of(run: Run, which: int | str) -> tuple[Replay, str]:
+    """A build of a run again, with its label, such as "trial-17" or "nominal".
+
+    Args:
+        which: a trial, or "worst", "nominal", "mean".
+
+    Raises:
+        InputError: no such build.
+    """
+    if which == "worst":
+        which = worst_trial(run)
+    if isinstance(which, int):
+        return replay(run, which), f"trial-{which}"
+    if which not in ("nominal", "mean"):
+        raise InputError(f"expected a trial's number, worst, nominal or mean, got {which!r}")
+    simulation = simulation_again(run)
+    system = simulation.system
+    build = nominal_build(system) if which == "nominal" else mean_build(system, system.measures[0])
+    return replayed(simulation, build), which
+
+
+def enlarged(build: Replay, factor: float) -> Replay:
+    """A build with its deviations multiplied by a factor; see `tol3d.study.system.stated.magnified`."""
+    if factor == 1.0:
+        return build
+    return replayed(build.simulation, magnified(build.simulation.system, build.trials, factor))
 
 
 def replayed(simulation: Simulation, trials: Trials) -> Replay:

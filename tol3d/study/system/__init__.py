@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from tol3d.study.system.draw import Each, Planar, Scalar
     from tol3d.study.system.mechanism import Mechanism, starter_lines, starter_named, starters_of
     from tol3d.study.system.plain import LengthSpec, PlainSystem, contributors_of, measures_of
+    from tol3d.study.system.stated import mean_build, nominal_build
     from tol3d.study.system.system import System
     from tol3d.study.system.trials import Trials
 
@@ -21,7 +22,9 @@ _HOMES = {
     "System": "tol3d.study.system.system",
     "Trials": "tol3d.study.system.trials",
     "contributors_of": "tol3d.study.system.plain",
+    "mean_build": "tol3d.study.system.stated",
     "measures_of": "tol3d.study.system.plain",
+    "nominal_build": "tol3d.study.system.stated",
     "starter_lines": "tol3d.study.system.mechanism",
     "starter_named": "tol3d.study.system.mechanism",
     "starters_of": "tol3d.study.system.mechanism",
@@ -37,7 +40,9 @@ __all__ = [
     "System",
     "Trials",
     "contributors_of",
+    "mean_build",
     "measures_of",
+    "nominal_build",
     "starter_lines",
     "starter_named",
     "starters_of",

@@ -9,9 +9,8 @@ from tol3d.gearing.presenting import GearPresenter
 
 if TYPE_CHECKING:
     from tol3d.report.page import PageItem
-    from tol3d.report.presenter import Display, Which
+    from tol3d.report.presenter import Display
     from tol3d.study.results.replaying import Replay
-    from tol3d.study.runs.run import Run
     from tol3d.study.runs.summary.run import RunSummary
     from tol3d.study.trials.simulation import Simulation
 
@@ -31,13 +30,9 @@ class MachinePresenter(GearPresenter):
         """Each part below the one that its move lays it on, each shaft below the part with its first bore."""
         return _lazily("tables").parts_blocks(simulation)  # type: ignore[no-any-return]
 
-    def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
-        """A build with its parts placed and its gears seated again."""
-        return _lazily("shown_machine").display(run, which, magnify=magnify)  # type: ignore[no-any-return]
-
-    def replayed(self, replay: "Replay", label: str) -> "Display":
-        """A trial that was replayed."""
-        return _lazily("shown_machine").replayed(replay, label)  # type: ignore[no-any-return]
+    def shown(self, build: "Replay", label: str, *, magnify: float) -> "Display":
+        """A build with its parts placed and its gears seated again, magnified as far as the teeth allow."""
+        return _lazily("shown_machine").shown(build, label, magnify=magnify)  # type: ignore[no-any-return]
 
 
 def _lazily(module: str) -> Any:

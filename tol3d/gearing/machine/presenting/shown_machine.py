@@ -12,13 +12,12 @@ from tol3d.assembly.presenting.symbols import unnamed
 from tol3d.errors import RunError
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.presenting.gear_display import GearDisplay
-from tol3d.gearing.shown.display import replayed_build, replayed_of, seated_build
+from tol3d.gearing.shown.display import seated_build
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import World
 from tol3d.report.motion import Motion
-from tol3d.report.presenter import View, Which
+from tol3d.report.presenter import View
 from tol3d.study.results.replaying import Replay
-from tol3d.study.runs.run import Run
 from tol3d.study.system.stated import magnified
 
 COLOURS: Final = ("#9AA7B4", "#BFA58E", "#9DB5A6", "#B4A5BE")
@@ -93,34 +92,20 @@ class ShownMachine:
         return View(notes=unnamed(self.placed.assembly))
 
 
-def display(run: Run, which: Which, *, magnify: float) -> ShownMachine:
-    """A build of a run, its deviations magnified as far as the teeth allow.
+def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine:
+    """A build that was replayed, its deviations magnified as far as the teeth allow.
 
     Raises:
-        InputError, RunError: no such build, or one that cannot be shown.
+        InputError, RunError: it cannot be shown.
     """
-    build = seated_build(run, which, magnify=magnify)
-    label, seen = replayed_of(run, which)
-    return _shown(GearDisplay(build), seen, label, build.magnify)
-
-
-def replayed(replay: Replay, label: str) -> ShownMachine:
-    """A trial that was replayed.
-
-    Raises:
-        RunError: it could not be assembled.
-    """
-    return _shown(GearDisplay(replayed_build(replay, label)), replay, label, 1.0)
-
-
-def _shown(gears: GearDisplay, seen: Replay, label: str, magnify: float) -> ShownMachine:
+    build = seated_build(seen, label, magnify=magnify)
     system = seen.simulation.system
     assert isinstance(system, MachineSystem)
-    trials = seen.trials if magnify == 1.0 else magnified(system, seen.trials, magnify)
+    trials = seen.trials if build.magnify == 1.0 else magnified(system, seen.trials, build.magnify)
     poses = {}
     for pose, own in system.poses.items():
         placed = placed_in(own.assembly, system.in_pose(trials.part(0, 1), pose))
         if placed is None:
             raise RunError(f"{label}: cannot be shown: {seen.status}")
         poses[pose] = placed
-    return ShownMachine(gears, system, next(iter(poses.values())), poses if "" not in poses else {})
+    return ShownMachine(GearDisplay(build), system, next(iter(poses.values())), poses if "" not in poses else {})

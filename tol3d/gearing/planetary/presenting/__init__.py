@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from tol3d.gearing.planetary.summary_types import PlanetaryOfRun, SpringSummary
-from tol3d.gearing.presenting import GearPresenter
+from tol3d.gearing.presenting import PRESENTER as TRAINS
 from tol3d.gearing.reducers.presenting import ReducerPresenter
 from tol3d.study.runs.summary.run import RunSummary
 
@@ -34,7 +34,7 @@ class PlanetaryPresenter(ReducerPresenter):
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its gears placed again; of former versions a train around the set too."""
         if getattr(run.found, "trains", None):
-            return GearPresenter.display(self, run, which, magnify=magnify)
+            return TRAINS.display(run, which, magnify=magnify)
         return super().display(run, which, magnify=magnify)
 
 
