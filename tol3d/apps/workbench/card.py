@@ -1,4 +1,4 @@
-"""The card of a measure: its verdict, its distribution before and now, and a slider for each tolerance that acts on it."""
+"""The card of a measure: its verdict, its distribution before and now, and a slider for each tolerance that acts."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.analyses.before_after import limits_of
+from tol3d.analyses.limit_state import Side
 from tol3d.analyses.response import Response
 from tol3d.analyses.scope import Scope
 from tol3d.analyses.stated_changes import told
@@ -76,10 +77,19 @@ def answer(base: Evaluated, now: Evaluated) -> Markup:
         if moved:
             before["out of limits"] = bounded_share_text(base.judged.out_ppm, base.judged.interval)
     cells = (
-        tag("tr", tag("th", name, scope="row"), tag("td", own), tag("td", before.get(name, ""), class_="dim") if moved else None)
+        tag(
+            "tr",
+            tag("th", name, scope="row"),
+            tag("td", own),
+            tag("td", before.get(name, ""), class_="dim") if moved else None,
+        )
         for name, own in rows
     )
-    head = tag("tr", tag("th", "", scope="col"), tag("th", "now", scope="col"), tag("th", "scene", scope="col")) if moved else None
+    head = (
+        tag("tr", tag("th", "", scope="col"), tag("th", "now", scope="col"), tag("th", "scene", scope="col"))
+        if moved
+        else None
+    )
     trials = f"{now.done} of {now.count} trials" if now.done < now.count else f"{now.count} trials"
     failed = now.sample.trials - now.sample.count
     words = f"limits {limits_text(low, high, shown.unit)} · " if judged.verdict != "no limits" else ""
@@ -109,7 +119,11 @@ def histogram(base: Evaluated, now: Evaluated | None, estimate: Array | None) ->
         estimate: values by others, of slopes alone; None for none.
     """
     shown, solid = Shown.of(base), base if now is None else now
-    parts = [base.good, *([now.good] if now is not None else []), *([] if estimate is None else [estimate[np.isfinite(estimate)]])]
+    parts = [
+        base.good,
+        *([now.good] if now is not None else []),
+        *([] if estimate is None else [estimate[np.isfinite(estimate)]]),
+    ]
     every = shown.per * np.concatenate(parts)
     if not every.size:
         return tag("p", "no build could be assembled", class_="warning")
@@ -118,7 +132,7 @@ def histogram(base: Evaluated, now: Evaluated | None, estimate: Array | None) ->
     series = list[Series]()
     if now is not None and now is not base:
         series.append(Outline(edges, _percent(base, shown, edges), "soft", "scene"))
-    limits = {side: shown.per * own for side, own in limits_of(base.measure).items()}
+    limits: dict[Side, float] = {side: shown.per * own for side, own in limits_of(base.measure).items()}
     middles = (edges[1:] + edges[:-1]) / 2
     beyond = (middles < limits.get("low", -math.inf)) | (middles > limits.get("high", math.inf))
     words = "simulated" if solid is now and now is not base else "scene"
@@ -127,22 +141,22 @@ def histogram(base: Evaluated, now: Evaluated | None, estimate: Array | None) ->
         heights = 100.0 * np.histogram(shown.per * estimate, edges)[0] / max(len(estimate), 1)
         series.append(Outline(edges, heights, "analytic", "estimate", dashed=True))
     sample = solid.sample
-    ppm = {"low": sample.below_limit_ppm, "high": sample.above_limit_ppm}
-    marks = [
-        Mark(
-            limit, "limit",
-            (f"{'LSL' if side == 'low' else 'USL'} {limit_text(limit, shown.unit)}", out_text(ppm[side], "below" if side == "low" else "above")),
-            upper=side == "high",
-        )
-        for side, limit in limits.items()
-    ]  # fmt: skip
+    marks = [*_marks(limits, sample, shown.unit)]
     top = max(float(own.heights.max()) for own in series if isinstance(own, Filled | Outline))
-    across = spanned(base.measure.name, np.array([edges[0], edges[-1], *limits.values()]), shown.unit)
-    chart = Chart(
-        f"histogram of {base.measure.name}", across, [Panel(Axis("% of trials", 0.0, 1.05 * top or 1.0), series, marks, 0.8)],
-        base.measure.name, table=[(mark.words[0], mark.words[1]) for mark in marks],
-    )  # fmt: skip
+    name = base.measure.name
+    across = spanned(name, np.array([edges[0], edges[-1], *limits.values()]), shown.unit)
+    panel = Panel(Axis("% of trials", 0.0, 1.05 * top or 1.0), series, marks, 0.8)
+    table = [(mark.words[0], mark.words[1]) for mark in marks]
+    chart = Chart(f"histogram of {name}", across, [panel], name, table=table)
     return together(svg(chart, NARROW), _legend(series))
+
+
+def _marks(limits: Mapping[Side, float], sample: Sample, unit: str) -> Iterator[Mark]:
+    """Limits with the fraction of trials beyond each."""
+    for side, limit in limits.items():
+        word, beyond = ("LSL", "below") if side == "low" else ("USL", "above")
+        ppm = sample.below_limit_ppm if side == "low" else sample.above_limit_ppm
+        yield Mark(limit, "limit", (f"{word} {limit_text(limit, unit)}", out_text(ppm, beyond)), upper=side == "high")
 
 
 def _percent(own: Evaluated, shown: Shown, edges: Array) -> Array:
@@ -170,9 +184,13 @@ def sliders(session: Session, measure: str, now: WhatIf, summary: MeasureSummary
     shares = _shares(session.response, summary) if summary is not None else {}
     lines = sorted(session.acting(measure), key=lambda line: -shares.get(line, 0.0))
     if not lines:
-        return tag("p", session.response.nothing_acts(session.measure(measure)) or "no tolerance acts on it", class_="note")
+        return tag(
+            "p", session.response.nothing_acts(session.measure(measure)) or "no tolerance acts on it", class_="note"
+        )
     first = [*_not_attributed(summary)] if summary is not None else []
-    return together(*first, tag("ul", *(_slider(session, line, now, shares.get(line)) for line in lines), class_="sliders"))
+    return together(
+        *first, tag("ul", *(_slider(session, line, now, shares.get(line)) for line in lines), class_="sliders")
+    )
 
 
 def _shares(response: Response, summary: MeasureSummary) -> Mapping[str, float]:
@@ -217,7 +235,10 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
                     "input", type="range", min=low, max=high, value=min(max(at, low), high), step=1, data_line=line,
                     aria_label=f"{line}: how wide", title=_why(scope),
                 ),
-                tag("input", type="text", value=_written(contributor, other), data_line=line, aria_label=f"{line}: tolerance"),
+                tag(
+                    "input", type="text", value=_written(contributor, other), data_line=line,
+                    aria_label=f"{line}: tolerance",
+                ),
                 class_="move",
             )
         )  # fmt: skip
@@ -245,7 +266,11 @@ def written_words(session: Session, now: WhatIf) -> Mapping[str, str]:
 def _why(scope: Scope) -> str | None:
     """Reasons why a slider ends before its usual ends."""
     assert scope.factors is not None
-    reasons = [why for why, end in ((scope.below, scope.factors[0] > 1 / WIDEST), (scope.above, scope.factors[1] < WIDEST)) if end]
+    reasons = [
+        why
+        for why, end in ((scope.below, scope.factors[0] > 1 / WIDEST), (scope.above, scope.factors[1] < WIDEST))
+        if end
+    ]
     return "; ".join(reasons) or None
 
 

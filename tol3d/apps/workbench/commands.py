@@ -5,7 +5,7 @@ import stat
 import tempfile
 import webbrowser
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -24,10 +24,12 @@ def app(
     """Open scenes in the browser: the assembly, its distribution, and tolerances to move by hand."""
     import uvicorn
 
+    from tol3d.apps.workbench.place import FolderLock
     from tol3d.apps.workbench.server import Server, application
     from tol3d.apps.workbench.workspace import Workspace
 
     workspace = Workspace.of(place)
+    lock = FolderLock(workspace.folder)
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as listening:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -35,14 +37,15 @@ def app(
         except OSError as error:
             raise InputError(f"--port {port}: {error.strerror}; leave it out for one that is free") from None
         own = listening.getsockname()[1]
-        server = Server(workspace, trust_parts, run_builders)
+        server = Server(workspace, lock, trust_parts, run_builders)
         guarded = application(server, own)
         address = f"{guarded.origin}/#{guarded.token}"
         out_console.print(f"{workspace.folder.name}: {address}", soft_wrap=True, highlight=False)
         out_console.print("Ctrl-C ends it")
-        config = uvicorn.Config(
-            guarded, log_level="warning", access_log=False, lifespan="off", server_header=False, ws="none", timeout_graceful_shutdown=2
-        )  # fmt: skip
+        if lock.refusal:
+            warn(lock.refusal)
+        quiet: dict[str, Any] = {"log_level": "warning", "access_log": False, "server_header": False}
+        config = uvicorn.Config(guarded, **quiet, lifespan="off", ws="none", timeout_graceful_shutdown=2)
         with tempfile.TemporaryDirectory(prefix="tol3d-page-") as folder:
             if browser and not webbrowser.open(_opener(Path(folder), address).as_uri()):
                 warn("no browser could be opened: open the address above in one on this computer")
@@ -50,11 +53,15 @@ def app(
                 uvicorn.Server(config).run(sockets=[listening])
             finally:
                 server.close()
+                lock.release()
 
 
 def _opener(folder: Path, address: str) -> Path:
     """A page for the user alone that leads to the app: a browser's command line, which others see, holds no token."""
     page = folder / "tol3d.html"
     page.touch(stat.S_IRUSR | stat.S_IWUSR)
-    page.write_text(f'<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url={address}"><a href="{address}">tol3d</a>')
+    page.write_text(
+        f'<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url={address}">'
+        f'<a href="{address}">tol3d</a>'
+    )
     return page

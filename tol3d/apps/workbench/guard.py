@@ -5,9 +5,8 @@ under another name (host), and does not know the token, which is in no address t
 """
 
 import hmac
-import secrets
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 from starlette.responses import PlainTextResponse
@@ -43,8 +42,8 @@ class Guard:
 
     app: ASGIApp
     port: int
-    token: str = field(default_factory=lambda: secrets.token_urlsafe(32))
-    nonce: str = field(default_factory=lambda: secrets.token_urlsafe(16))
+    token: str
+    nonce: str
 
     @property
     def origin(self) -> str:
@@ -96,13 +95,15 @@ class Guard:
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 known = [(key, value) for key, value in message.get("headers", ()) if key != b"server"]
-                message = {**message, "headers": [*known, *HEADERS, (b"content-security-policy", policy)]}
+                stricter = any(key == b"content-security-policy" for key, _ in known)
+                own = [] if stricter else [(b"content-security-policy", policy)]
+                message = {**message, "headers": [*known, *HEADERS, *own]}
             await send(message)
 
         return with_headers
 
 
-class TooLarge(Exception):
+class TooLargeError(Exception):
     """A body that goes on beyond what it may have."""
 
 
@@ -115,7 +116,7 @@ def _limited(receive: Receive) -> Receive:
         message = await receive()
         got += len(message.get("body", b""))
         if got > LARGEST_BODY:
-            raise TooLarge
+            raise TooLargeError
         return message
 
     return limited

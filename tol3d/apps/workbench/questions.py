@@ -5,7 +5,8 @@ made, from which shares of contributors come. The page names scenes by the works
 """
 
 import difflib
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
@@ -14,12 +15,16 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from tol3d.analyses.kept_changes import scene_with
+from tol3d.apps.workbench.builds import build_view
 from tol3d.apps.workbench.card import answer, histogram, sliders, written_words
+from tol3d.apps.workbench.jobs import Job, Jobs
+from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.session import AT_ONCE, FEW, Session
 from tol3d.apps.workbench.text_check import checked
 from tol3d.apps.workbench.tree import parts_of, tree
 from tol3d.apps.workbench.workspace import MOST_KEPT, Notes, Workspace, digest, written
-from tol3d.errors import InputError, SceneError
+from tol3d.errors import InputError, Tol3dError
+from tol3d.numerics.arrays import Array
 from tol3d.simulate import Overrides, run_scene
 from tol3d.study.runs.run import Run
 
@@ -29,7 +34,9 @@ MOST_OPEN: Final = 3
 SHARED: Final = 20_000
 """Trials of the run that shares come from, at most; of a slow scene as many as take SHARES_WITHIN."""
 SHARES_WITHIN: Final = 20.0  # s, about
-class Stale(InputError):
+
+
+class StaleError(InputError):
     """The file is not the one that was read."""
 
 
@@ -40,17 +47,26 @@ class Questions:
     Args:
         workspace: the folder.
         trust_parts, run_builders: as `tol3d run` has them.
-        read_only: True where another app writes in this folder.
+        lock: the right to write in the folder.
     """
 
     workspace: Workspace
+    lock: FolderLock
     trust_parts: bool = False
     run_builders: bool = False
-    read_only: bool = False
     sessions: dict[str, Session] = field(default_factory=dict)
     runs: dict[str, "Future[Run]"] = field(default_factory=dict)
     beside: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "shares"))
+    _jobs: Jobs = field(init=False)
     scratch: TemporaryDirectory[str] = field(default_factory=partial(TemporaryDirectory, prefix="tol3d-app-"))
+
+    def __post_init__(self) -> None:
+        self._jobs = Jobs(self.lock)
+
+    @property
+    def read_only(self) -> bool:
+        """True where another app writes in this folder."""
+        return bool(self.lock.refusal)
 
     def session(self, name: str) -> Session:
         """An open scene; it is read again where its file has changed.
@@ -134,6 +150,60 @@ class Questions:
             "entries": [entry for line in lines for entry in entries.get(line, (line,))],
         }
 
+    def view(self, asked: Told) -> Callable[[], bytes]:
+        """Builds in 3D: the nominal one, and the mean, the worst or one trial: length and text of JSON, then a GLB.
+
+        Solids take seconds: what makes them is called where nobody waits.
+        """
+        session, measure, now = self._asked(asked)
+        rows = dict[str, tuple[Array, Mapping[str, Array] | None]]()
+        if "mean" in asked.get("builds", ()):
+            rows["mean"] = (session.changed(now).mean, None)
+        evaluated = session.evaluated(measure, now)
+        if "worst" in asked.get("builds", ()) and evaluated.done:
+            rows["worst"] = evaluated.trial(evaluated.worst)
+        if (trial := asked.get("trial")) is not None:
+            if not 0 <= int(trial) < evaluated.count:
+                raise InputError(f"expected a trial from 0 to {evaluated.count - 1}, got {trial}")
+            rows[f"trial {int(trial)}"] = evaluated.trial(int(trial))
+
+        def built() -> bytes:
+            try:
+                model, words = build_view(session.simulation, rows)
+            except InputError:
+                raise
+            except Tol3dError as error:
+                raise InputError(f"there is nothing to show in 3D: {error}") from None
+            head = json.dumps(words, allow_nan=False).encode()
+            return len(head).to_bytes(4, "big") + head + model
+
+        return built
+
+    # jobs -----------------------------------------------------------------------------------------
+
+    def jobs(self, asked: Told) -> Told:
+        """Jobs of the folder as they stand, the newest first."""
+        del asked
+        return {"jobs": [_job(own) for own in reversed(self._jobs.list())]}
+
+    def start(self, asked: Told) -> Told:
+        """Run a scene with all its trials, as `tol3d run` does."""
+        path = self.workspace.scene(str(asked["scene"]))
+        return _job(self._jobs.start(path, trust_parts=self.trust_parts, run_builders=self.run_builders))
+
+    def cancel(self, asked: Told) -> Told:
+        """End a job in order: what it has made is kept."""
+        return _job(self._jobs.cancel(str(asked["id"])))
+
+    def resume(self, asked: Told) -> Told:
+        """Let a job go on from where it stopped."""
+        return _job(self._jobs.resume(str(asked["id"]), trust_parts=self.trust_parts, run_builders=self.run_builders))
+
+    def report(self, asked: Told) -> Path | Told:
+        """File of a finished run's report; the job that makes it, while it does."""
+        found = self._jobs.report(str(asked["id"]))
+        return found if isinstance(found, Path) else _job(found)
+
     def notes(self, asked: Told) -> Told:
         """Keep what is moved beside the scene, so that it is there after a reload."""
         name, now = str(asked["scene"]), _changes(asked.get("now"))
@@ -177,16 +247,19 @@ class Questions:
             "folder": self.workspace.folder.name,
             "scenes": [*self.workspace.scenes],
             "first": self.workspace.first,
-            "read_only": self.read_only,
+            "read_only": self.lock.refusal,
         }
 
     def _write(self, path: Path, text: str, known: str) -> None:
         if self.read_only:
-            raise InputError("expected the only app on this folder, but another one has it open: this one only reads")
+            raise InputError(self.lock.refusal)
         if digest(path.read_bytes()) != known:
-            raise Stale(f"{path.name} was changed by another program since it was read here: load the page again")
+            raise StaleError(f"{path.name} was changed by another program since it was read here: load the page again")
         content = text.encode()
-        written(path, content.replace(b"\n", b"\r\n") if b"\r\n" in path.read_bytes() and b"\r\n" not in content else content)
+        written(
+            path,
+            content.replace(b"\n", b"\r\n") if b"\r\n" in path.read_bytes() and b"\r\n" not in content else content,
+        )
 
     def _asked(self, asked: Told) -> tuple[Session, str, Mapping[str, str]]:
         session = self.session(str(asked["scene"]))
@@ -217,11 +290,18 @@ def _changes(told: Any) -> dict[str, str]:
 
 
 def _problems(error: InputError) -> list[dict[str, Any]]:
-    if isinstance(error, SceneError):
-        return [{"line": getattr(own, "line", 1), "message": str(own)} for own in error.problems]
-    return [{"line": 1, "message": str(error)}]
+    return [own.data() for own in error.problems]
+
+
+def _job(job: Job) -> dict[str, Any]:
+    told = {
+        key: getattr(job, key) for key in ("id", "scene", "kind", "state", "done", "of", "words", "started", "message")
+    }
+    return told | {"run": job.run.name if job.run else ""}
 
 
 def _difference(before: str, after: str, name: str) -> str:
-    lines = difflib.unified_diff(before.splitlines(), after.splitlines(), name, name, "as it is", "kept", n=1, lineterm="")
+    lines = difflib.unified_diff(
+        before.splitlines(), after.splitlines(), name, name, "as it is", "kept", n=1, lineterm=""
+    )
     return "\n".join(lines)

@@ -1,8 +1,9 @@
-"""Requests of the app's page: static files, and questions as JSON. It loads what answers them when the first is asked."""
+"""Requests of the app's page: static files, and questions as JSON. What answers them is loaded at the first."""
 
 import asyncio
 import json
 import secrets
+import time
 from collections.abc import Awaitable, Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -13,10 +14,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, JSONResponse, Response
+from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
-from tol3d.apps.workbench.guard import LARGEST_BODY, Guard, TooLarge
+from tol3d.apps.workbench.guard import LARGEST_BODY, Guard, TooLargeError
+from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.workspace import Workspace
 from tol3d.errors import InputError
 
@@ -24,7 +26,14 @@ if TYPE_CHECKING:
     from tol3d.apps.workbench.questions import Questions
 
 QUESTIONS: Final = "tol3d.apps.workbench.questions"  # loads analyses and scipy: seconds
-ASKED: Final = ("folder", "scene", "card", "estimate", "sliders", "notes", "check", "keep", "save", "changed")
+ASKED: Final = (
+    *("folder", "scene", "card", "estimate", "sliders", "notes", "check", "keep", "save", "changed", "view"),
+    *("jobs", "start", "cancel", "resume", "report"),
+)
+TICKET_S: Final = 60.0
+"""Time for which the address of a report holds [s]; each opens once."""
+SANDBOX: Final = "sandbox allow-scripts"
+"""Of a report, which may be of a stranger's run: it cannot ask this server for anything."""
 TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
 PAGE: Final = "tol3d.apps.workbench.page"
 REPORT: Final = "tol3d.report.html"
@@ -38,15 +47,17 @@ class Server:
 
     Args:
         workspace: the folder.
+        lock: the right to write in it.
         trust_parts, run_builders: as `tol3d run` has them.
-        read_only: True where another app writes in this folder.
     """
 
     workspace: Workspace
+    lock: FolderLock
     trust_parts: bool = False
     run_builders: bool = False
-    read_only: bool = False
+    tickets: dict[str, tuple[float, Path]] = field(default_factory=dict)
     thread: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "live"))
+    solids: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "solids"))
     _questions: "Questions | None" = None
 
     @property
@@ -54,17 +65,34 @@ class Server:
         """What answers; only its own thread asks."""
         if self._questions is None:
             made = import_module(QUESTIONS).Questions
-            self._questions = made(self.workspace, self.trust_parts, self.run_builders, self.read_only)
+            self._questions = made(self.workspace, self.lock, self.trust_parts, self.run_builders)
         return self._questions
 
-    def ask(self, name: str, asked: Mapping[str, Any]) -> Mapping[str, Any]:
-        """An answer."""
-        answer: Mapping[str, Any] = getattr(self.questions, name)(asked)
-        return answer
+    async def asked(self, name: str, words: Mapping[str, Any]) -> Response:
+        """An answer: data as JSON, bytes as they are, a file as an address at which it opens once."""
+        loop = asyncio.get_running_loop()
+        answer: Any = await loop.run_in_executor(self.thread, lambda: getattr(self.questions, name)(words))
+        if callable(answer):
+            answer = await loop.run_in_executor(self.solids, answer)
+        if isinstance(answer, bytes):
+            return Response(answer, media_type="application/octet-stream")
+        if isinstance(answer, Path):
+            ticket = secrets.token_urlsafe(32)
+            self.tickets[ticket] = (time.monotonic() + TICKET_S, answer)
+            return JSONResponse({"address": f"/report/{ticket}"})
+        return JSONResponse(answer)
+
+    def file(self, request: Request) -> Response:
+        """A file at the address that was made for it."""
+        until, path = self.tickets.pop(request.path_params["ticket"], (0.0, Path()))
+        if time.monotonic() > until:
+            return PlainTextResponse("expected an address that the app has just made: ask for the report again", 404)
+        return HTMLResponse(path.read_bytes(), headers={"content-security-policy": SANDBOX})
 
     def close(self) -> None:
         """Let threads end, and remove what was made for the time that it was open."""
-        self.thread.shutdown(wait=True, cancel_futures=True)
+        for own in (self.solids, self.thread):
+            own.shutdown(wait=True, cancel_futures=True)
         if self._questions is not None:
             self._questions.close()
 
@@ -73,11 +101,11 @@ def application(server: Server, port: int, token: str | None = None) -> Guard:
     """All routes, guarded."""
     routes = [Route(f"/api/{name}", _question(server, name), methods=["POST"]) for name in ASKED]
     routes += [Route(f"/{name}", _file(package, name)) for name, package in FILES.items()]
-    guard = Guard(Starlette(routes=routes), port, token or secrets.token_urlsafe(32))
-    page = resources.files(PAGE).joinpath("index.html").read_text("utf-8").replace("NONCE", guard.nonce)
+    routes.append(Route("/report/{ticket}", server.file))
+    nonce = secrets.token_urlsafe(16)
+    page = resources.files(PAGE).joinpath("index.html").read_text("utf-8").replace("NONCE", nonce)
     routes.append(Route("/", lambda request: HTMLResponse(page)))
-    guard.app.routes.append(routes[-1])
-    return guard
+    return Guard(Starlette(routes=routes), port, token or secrets.token_urlsafe(32), nonce)
 
 
 def _question(server: Server, name: str) -> Callable[[Request], Awaitable[Response]]:
@@ -88,14 +116,14 @@ def _question(server: Server, name: str) -> Callable[[Request], Awaitable[Respon
             asked = json.loads(await request.body())
             if not isinstance(asked, dict):
                 raise ValueError
-        except TooLarge:
+        except TooLargeError:
             return JSONResponse({"error": f"expected at most {LARGEST_BODY} bytes"}, 413)
         except ValueError:
             return JSONResponse({"error": "expected a JSON object"}, 400)
         try:
-            return JSONResponse(await asyncio.get_running_loop().run_in_executor(server.thread, server.ask, name, asked))
+            return await server.asked(name, asked)
         except InputError as error:
-            return JSONResponse({"error": str(error)}, STALE if type(error).__name__ == "Stale" else 422)
+            return JSONResponse({"error": str(error)}, STALE if type(error).__name__ == "StaleError" else 422)
         except (KeyError, TypeError, ValueError) as error:
             return JSONResponse({"error": f"expected another request: {error!r}"}, 400)
 

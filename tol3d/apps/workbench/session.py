@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.moved_values import MovedValues
 from tol3d.analyses.response import Response, Values, response_of
 from tol3d.analyses.results import results_of
@@ -110,6 +111,21 @@ class Evaluated:
         """Its verdict, as a run's."""
         limited = self.measure.lower_limit is not None or self.measure.upper_limit is not None
         return JudgedMeasure.by(self.sample, demand_of(self.response.simulation.study.accept_ppk), limited=limited)
+
+    def trial(self, number: int) -> tuple[Array, Mapping[str, Array]]:
+        """Deviations of a build (components,) [mm, rad, K], and its positions."""
+        return self.kept.deviations[number], {name: own[number] for name, own in self.kept.positions.items()}
+
+    @property
+    def worst(self) -> int:
+        """The build that is nearest to a limit or furthest beyond it; without limits the farthest from the mean."""
+        values = self.values.values[:, 0]
+        low, high = ((limits_of(self.measure).get(side)) for side in SIDES)
+        if low is None and high is None:
+            depth = np.abs(values - np.nanmean(values))
+        else:
+            depth = np.fmax(-np.inf if low is None else low - values, -np.inf if high is None else values - high)
+        return int(np.nanargmax(depth)) if np.isfinite(depth).any() else 0
 
     @property
     def good(self) -> Array:

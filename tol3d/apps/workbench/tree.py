@@ -20,7 +20,9 @@ def _section(scene: Scene, name: str) -> Markup | None:
     if not entries:
         return None
     rows = (_entry(scene, (name, own), spec) for own, spec in entries.items())
-    return tag("details", tag("summary", name, " ", tag("span", str(len(entries)), class_="dim")), tag("ul", *rows), open="")
+    return tag(
+        "details", tag("summary", name, " ", tag("span", str(len(entries)), class_="dim")), tag("ul", *rows), open=""
+    )
 
 
 def _entry(scene: Scene, path: KeyPath, spec: Any) -> Markup:

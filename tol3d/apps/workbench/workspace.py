@@ -63,7 +63,9 @@ class Workspace:
         if place.is_dir():
             found = cls(place.resolve())
             if not found.scenes:
-                raise InputError(f"{place}: expected a scene or a folder with scenes, got one without {SUFFIXES[0]} files")
+                raise InputError(
+                    f"{place}: expected a scene or a folder with scenes, got one without {SUFFIXES[0]} files"
+                )
             return found
         if not place.is_file() or place.suffix not in SUFFIXES:
             raise InputError(f"{place}: expected a scene ({SUFFIXES[0]}) or a folder of scenes")
@@ -109,7 +111,9 @@ class Workspace:
             told = json.loads((self.notes_folder / f"{scene}.json").read_text("utf-8"))
             if told["version"] != VERSION:
                 return Notes({})
-            return Notes(_changes(told["now"]), tuple(_changes(own) for own in told["beside"][:MOST_KEPT]), str(told["measure"]))
+            return Notes(
+                _changes(told["now"]), tuple(_changes(own) for own in told["beside"][:MOST_KEPT]), str(told["measure"])
+            )
         except (OSError, ValueError, KeyError, TypeError):
             return Notes({})
 
@@ -119,7 +123,12 @@ class Workspace:
         Raises:
             InputError: it cannot be written.
         """
-        told = {"version": VERSION, "now": dict(notes.now), "beside": [dict(own) for own in notes.beside], "measure": notes.measure}
+        told = {
+            "version": VERSION,
+            "now": dict(notes.now),
+            "beside": [dict(own) for own in notes.beside],
+            "measure": notes.measure,
+        }
         written(self.notes_folder / f"{scene}.json", json.dumps(told, ensure_ascii=False, indent=1).encode())
 
 

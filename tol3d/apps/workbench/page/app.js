@@ -23,6 +23,7 @@ async function ask(name, told = {}) {
   } catch {
     throw new Error("the server does not answer: is tol3d app still running?");
   }
+  if (reply.ok && reply.headers.get("content-type") === "application/octet-stream") return reply.arrayBuffer();
   const found = await reply.json().catch(async () => ({ error: `${reply.status}` }));
   if (!reply.ok) throw Object.assign(new Error(found.error ?? `${reply.status}`), { status: reply.status });
   return found;
@@ -37,7 +38,9 @@ function trouble(error) {
 
 async function start() {
   const folder = await ask("folder");
-  app.readOnly = folder.read_only;
+  app.readOnly = Boolean(folder.read_only);
+  $("run").disabled = app.readOnly;
+  if (folder.read_only) trouble(folder.read_only);
   $("which").hidden = folder.scenes.length < 2;
   $("scene").replaceChildren(...folder.scenes.map((name) => new Option(name, name)));
   const asked = decodeURIComponent(location.hash.replace(/^#\/scene\//, ""));
@@ -434,6 +437,109 @@ document.addEventListener("keydown", (event) => {
     undo();
   } else if (event.key === "?" && !typing) $("help").showModal();
 });
+
+// in 3D -------------------------------------------------------------------------------------------
+
+let view = null, showing = 0;
+async function stage() {
+  const which = $("build").value, wish = ++showing;
+  $("stage-words").textContent = "building …";
+  try {
+    const trial = Number($("trial").value) || 0;
+    const bytes = await ask("view", which === "trial" ? { trial } : { builds: which === "nominal" ? [] : [which] });
+    if (wish !== showing) return;
+    const length = new DataView(bytes).getUint32(0), told = JSON.parse(new TextDecoder().decode(bytes.slice(4, 4 + length)));
+    const model = bytes.slice(4 + length);
+    if (view) await view.replace(model, told);
+    else {
+      view = window.tol3dView($("stage"), model, told);
+      view.onpick((part) => part && find("parts", part));
+      await view.ready;
+    }
+    parts(told.parts);
+    view.show(told.builds.length - 1, Number($("stage").querySelector('[name="factor"]').dataset.wanted ?? 1));
+    light();
+    const refused = Object.entries(told.refused).map(([name, why]) => `${name}: ${why}`);
+    if (refused.length) $("stage-words").textContent = refused.join("; ");
+  } catch (error) {
+    if (wish === showing) $("stage-words").textContent = error.message;
+  }
+}
+
+function parts(told) {
+  $("parts").replaceChildren(...told.map((own, k) => {
+    const label = document.createElement("label"), box = document.createElement("input");
+    Object.assign(box, { type: "checkbox", name: "part", value: k, checked: true });
+    label.append(box, ` ${own.name}`);
+    return label;
+  }));
+}
+
+function light() {
+  if (view) view.light($("lit").checked && app.acting?.parts.length ? app.acting.parts : null);
+}
+
+function find(section, name) {
+  const own = [...document.querySelectorAll("#tree button")].find((one) => one.dataset.section === section && one.dataset.name === name);
+  own?.scrollIntoView({ block: "nearest" });
+  own?.focus({ preventScroll: true });
+  if (own?.dataset.line) editor.go(Number(own.dataset.line));
+}
+
+$("build").addEventListener("change", () => {
+  $("trial").hidden = $("build").value !== "trial";
+  stage();
+});
+$("trial").addEventListener("change", stage);
+$("lit").addEventListener("change", light);
+window.addEventListener("tol3d-acting", light);
+window.addEventListener("tol3d-scene", stage);
+
+// jobs --------------------------------------------------------------------------------------------
+
+const ENDED = ["done", "failed", "cancelled", "interrupted"];
+async function jobs() {
+  let found;
+  try {
+    found = (await ask("jobs")).jobs;
+  } catch {
+    return;
+  }
+  const own = found.filter((job) => job.scene === app.scene).slice(0, 1);
+  $("job").replaceChildren(...own.flatMap((job) => {
+    const share = job.of ? ` ${job.done} of ${job.of}` : "";
+    const words = document.createElement("span");
+    words.textContent = `${job.kind} ${job.state}${share} ${job.state === "running" ? job.words : job.message}`;
+    const act = ENDED.includes(job.state) ? [] : [button("cancel", () => ask("cancel", { id: job.id }).then(jobs, trouble))];
+    if (["cancelled", "interrupted"].includes(job.state)) act.push(button("resume", () => ask("resume", { id: job.id }).then(jobs, trouble)));
+    if (job.state === "done" && job.kind === "run") act.push(button("report", () => report(job.id)));
+    return [words, ...act];
+  }));
+  clearTimeout(jobs.later);
+  jobs.later = setTimeout(jobs, own.some((job) => !ENDED.includes(job.state)) ? 700 : 5000);
+}
+
+async function report(id) {
+  try {
+    for (;;) {
+      const found = await ask("report", { id });
+      if (found.address) {
+        window.open(found.address, "_blank", "noopener");
+        return;
+      }
+      if (["failed", "cancelled", "interrupted"].includes(found.state)) throw new Error(found.message || `the report was ${found.state}`);
+      $("state").textContent = "making the report …";
+      await new Promise((done) => setTimeout(done, 500));
+    }
+  } catch (error) {
+    trouble(error);
+  } finally {
+    $("state").textContent = "";
+  }
+}
+
+$("run").addEventListener("click", () => ask("start").then(jobs, trouble));
+window.addEventListener("tol3d-scene", jobs);
 
 window.tol3dApp = { app, ask, trouble, editor, choose };
 start().catch(trouble);
