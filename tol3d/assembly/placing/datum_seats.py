@@ -121,7 +121,7 @@ def _refuse_scattered(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -
                 f"{name}, simulator: pattern}}"
             )
         along = np.sort(places @ ways[0])
-        if len(places) > 2 and np.diff(along).min() < ABREAST:
+        if np.diff(along).min() < ABREAST:
             raise InputError(
                 f"datum frame {frame.name}: two features of the common datum {name} have one centre: name one"
             )
