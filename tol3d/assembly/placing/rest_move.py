@@ -124,15 +124,18 @@ class Resting(RockingPlacer):
         return turn + once + product(skew, once) / 2.0, shift + moved[3:]
 
     def carries(self) -> tuple[Array, Array]:
-        """The least and the largest part of the force that each contact may carry (contacts,)."""
-        ends = [
-            [
-                linprog(sign * one, A_eq=self.rows.T, b_eq=-self.pull, method="highs").fun
-                for one in np.eye(len(self.rows))
-            ]
-            for sign in (1.0, -1.0)
-        ]
-        return np.array(ends[0]), -np.array(ends[1])
+        """The least and the largest part of the force that each contact may carry (contacts,).
+
+        Contacts that may press against each other have no largest part: inf.
+        """
+        least, most = [], []
+        for one in np.eye(len(self.rows)):
+            low, high = (
+                linprog(sign * one, A_eq=self.rows.T, b_eq=-self.pull, method="highs").fun for sign in (1.0, -1.0)
+            )
+            least.append(low)
+            most.append(np.inf if high is None else -high)
+        return np.array(least), np.array(most)
 
     def asked(self, assembly: Assembly, middle: Array) -> Iterator[Asked]:
         """Its relations, then its contacts all at once."""
