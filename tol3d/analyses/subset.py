@@ -15,7 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.design_points import DesignPoint
-from tol3d.analyses.limit_state import Estimate, LimitState, Positions, at_place, counted, effective, weighted_interval
+from tol3d.analyses.limit_state import (
+    MOST_UNSEEN,
+    Estimate,
+    LimitState,
+    Positions,
+    at_place,
+    counted,
+    effective,
+    weighted_interval,
+)
 from tol3d.numerics.arrays import Array
 
 SHARE: Final = 0.1
@@ -120,7 +129,7 @@ def _estimate(rows: Rows, probabilities: Array, spent: int, each: int) -> Estima
     elif probabilities.std(ddof=1) > UNLIKE * probability:
         notes.append("the repetitions differ by much: take more draws a level (--draws)")
     freedoms = effective(probabilities) - 1.0  # fewer where some repetitions make most of the mean
-    interval = weighted_interval(probability, error, freedoms, -math.log(0.025) / (REPETITIONS * each))
+    interval = weighted_interval(probability, error, freedoms, MOST_UNSEEN / (REPETITIONS * each))
     return Estimate(probability, error, interval, unseated, spent, tuple(notes))
 
 
