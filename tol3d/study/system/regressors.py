@@ -31,7 +31,7 @@ def regressor_count(contributor: Contributor) -> int:
 
 
 def regress_plainly(rows: Array, contributor: Contributor, values: Sequence[Array]) -> None:
-    """Write rows of a deviation whose direction does not turn with a gear, over its sigma.
+    """Write rows of a deviation whose direction does not turn, over its sigma.
 
     A single component has its value less the mean, and the square of that; several have a row each, means included.
 
