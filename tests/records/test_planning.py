@@ -179,6 +179,8 @@ def test_the_plan_is_printed_and_written(tol3d: Command, tmp_path: Path) -> None
         (("--noise", "0.5"), "--noise: expected an angle with its unit"),
         (("--noise", "1e999 arcsec"), "--noise: expected an angle with its unit"),  # not finite
         (("--noise", "1 arcsec" + 99 * " " + "wrong"), "--noise: expected an angle with its unit"),
+        (("--noise", "-1 arcsec"), "--noise: expected 0 or more, got '-1 arcsec'"),
+        (("--resolution", "-1 urad"), "--resolution: expected 0 or more, got '-1 urad'"),
         (("--e1", "3 arcsec"), "--e1: expected a length with its unit"),
     ],
 )

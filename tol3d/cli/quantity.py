@@ -33,11 +33,11 @@ PLAIN: Final = re.compile(r"\d{1,5}\.?\d{0,9}|\.\d{1,9}")
 STATED: Final = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s].*?)\s*")
 
 
-def stated(option: str, text: str, kind: Kind) -> float:
+def stated(option: str, text: str, kind: Kind, least: float = -math.inf) -> float:
     """Value of an option with its unit [rad, N m or mm].
 
     Raises:
-        InputError: no finite number with a unit of that kind.
+        InputError: no finite number with a unit of that kind, or less than the least.
 
     >>> round(stated("--e1", "18 um", "length"), 9)
     0.018
@@ -50,6 +50,8 @@ def stated(option: str, text: str, kind: Kind) -> float:
             f"{option}: expected {article} {kind} with its unit ({units}), such as "
             f'"{EXAMPLES[kind]}", got {shown(text)}'
         )
+    if value < least:
+        raise InputError(f"{option}: expected {least:g} or more, got {shown(text)}")
     return value
 
 
