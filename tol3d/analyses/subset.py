@@ -35,7 +35,7 @@ LEVELS: Final = 24
 ACCEPTED: Final = 0.44
 """Share of a chain's steps that should be accepted: the step's length is adapted to it."""
 FIRST_STEP, LEAST_STEP = 0.6, 0.02
-"""Length of a step, in standard deviations of the seeds: at first, and at least."""
+"""Length of a step along the normal in which the seeds spread most: at first, and at least."""
 TURNED: Final = 0.2
 """Share of the steps that draw another position and keep the deviations; the others keep the position."""
 FREQUENT: Final = 0.05

@@ -79,7 +79,7 @@ class EachZone(EachOwn):
         return steepest_ends(values, mean, steps, self._reach)
 
     def _reach(self, slopes: Array) -> Array:
-        """Components at the end along slopes: of its own reach each planet takes its slopes' part of all."""
+        """Components at the end along slopes: each planet at |its slopes| / |all slopes| of its own reach."""
         middle = np.array(self.each.mean(turning=False))
         size = float(np.sqrt((slopes * slopes).sum())) or 1.0
         ends = [
