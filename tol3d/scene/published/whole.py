@@ -104,7 +104,7 @@ class PublishedTiming(Strict):
     simulate_s: NotNegative | None = Field(default=None, description="time of the trials [s]")
     first_block_s: NotNegative | None = Field(default=None, description="time of the first block [s]")
     trials_per_s: NotNegative | None = Field(default=None, description="trials per second")
-    resumed_trials: Count | None = Field(default=None, description="number of trials from an earlier run that was resumed")
+    resumed_trials: Count | None = Field(default=None, description="number of trials from a resumed run")
     workers: Count | None = Field(default=None, description="number of processes")
     peak_memory_mb: NotNegative | None = Field(default=None, description="peak memory [MB]")
 
