@@ -188,7 +188,7 @@ def summed(terms: Iterable[tuple[int, Quantity]]) -> Quantity:
     if len(units) == 1:
         return Quantity(float(sum(times * number for times, number, _ in several)), *units)
     table = FACTORS[several[0][2].dimension]
-    total = sum(times * number * Decimal(repr(table[own.unit])) for times, number, own in several)
+    total = sum(times * number * Decimal(repr(table[quantity.unit])) for times, number, quantity in several)
     return Quantity(float(total), next(iter(table)))
 
 

@@ -192,11 +192,12 @@ def _analysed(
 
 
 def _kept(
-    subject: Subject, name: str, found: Found, numbers: Callable[[Page], Mapping[str, Table]]
+    subject: Subject, name: str, result: Found, numbers: Callable[[Page], Mapping[str, Table]]
 ) -> tuple[Page, Found, Callable[[], Mapping[str, Table]], Callable[[], Charts], Path | None]:
     """Arguments of every answer: page, numbers, functions that make tables and charts, and the run's file."""
-    page = page_of(name, found, subject.name, lambda: subject.simulation.system.contributors)
-    return page, found, lambda: numbers(page), partial(charts_of, name, found, subject.name), subject.keep(name, found)
+    page = page_of(name, result, subject.name, lambda: subject.simulation.system.contributors)
+    charts = partial(charts_of, name, result, subject.name)
+    return page, result, lambda: numbers(page), charts, subject.keep(name, result)
 
 
 def _first_table(page: Page) -> Mapping[str, Table]:
@@ -254,9 +255,9 @@ def what_if(
         for words in warnings:
             warn(words)
         trials, draws = (0, 0) if quick else (trials, draws)
-        found = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=tell)
-    numbers = {name: what_if_table(each) for name, each in found.measures.items()}
-    return Answer(*_kept(analysed, "what-if", found, lambda page: numbers), warnings)
+        result = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=tell)
+    numbers = {name: what_if_table(each) for name, each in result.measures.items()}
+    return Answer(*_kept(analysed, "what-if", result, lambda page: numbers), warnings)
 
 
 def effects(
@@ -288,8 +289,8 @@ def effects(
     with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
         response = response if measure is None else response.of(measure)
         as_input = _one_of("position", position, ("averaged", "as-input")) == "as-input"
-        found = found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=tell)
-    return Answer(*_kept(analysed, "effects", found, lambda page: {"": effects_table(found)}), whole=True)
+        result = found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=tell)
+    return Answer(*_kept(analysed, "effects", result, lambda page: {"": effects_table(result)}), whole=True)
 
 
 def rare(
@@ -319,8 +320,8 @@ def rare(
     with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
         _one_of("method", method, ("auto", "importance", "subset", "form", "sorm"))
         events = limits_left(response, measure, method=method, draws=draws, seed=seed, activity=tell)
-        found = rare_section(analysed.name, seed, response, events)
-    return RareAnswer(*_kept(analysed, "rare", found, _first_table), events=tuple(events))
+        result = rare_section(analysed.name, seed, response, events)
+    return RareAnswer(*_kept(analysed, "rare", result, _first_table), events=tuple(events))
 
 
 def changes(
@@ -354,12 +355,12 @@ def changes(
         accepted: Accepted = (ACCEPTED_PPM if accept is None else accept) if ppk is None else AcceptedPpk(ppk)
         ppm, aim = (accepted.beyond_one_ppm, accepted.ppk) if isinstance(accepted, AcceptedPpk) else (accepted, AIM)
         bad = None if analysed.run is None else not_ok(analysed.run, accepted)
-        found = changes_of(response, ChangesQuestion(measure, ppm, builds, aim), bad=bad, activity=tell)
+        result = changes_of(response, ChangesQuestion(measure, ppm, builds, aim), bad=bad, activity=tell)
 
     def numbers(page: Page) -> Mapping[str, Table]:
         return {"": contributions_table(contributions_of(response, measure))}
 
-    return Answer(*_kept(analysed, "changes", found, numbers), whole=True)
+    return Answer(*_kept(analysed, "changes", result, numbers), whole=True)
 
 
 def methods(
@@ -384,9 +385,9 @@ def methods(
     """
     with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
         response = response if measure is None else response.of(measure)
-        found = found_side_by_side(response, trials_of(analysed, response, trials), tell)
-    numbers = {name: intervals_table(each) for name, each in found.measures.items()}
-    return Answer(*_kept(analysed, "methods", found, lambda page: numbers))
+        result = found_side_by_side(response, trials_of(analysed, response, trials), tell)
+    numbers = {name: intervals_table(each) for name, each in result.measures.items()}
+    return Answer(*_kept(analysed, "methods", result, lambda page: numbers))
 
 
 def allocate(
@@ -439,12 +440,12 @@ def allocate(
             beyond_least=beyond_least,
         )
         targets = targets_of(response, [measure] if isinstance(measure, str) else measure, ppm, ppk)
-        found = allocation(response, targets, question, draws=draws, seed=seed, activity=tell)
+        result = allocation(response, targets, question, draws=draws, seed=seed, activity=tell)
 
     def write() -> Scene:
-        return allocated_scene(analysed.scene, response, found, question.stays)
+        return allocated_scene(analysed.scene, response, result, question.stays)
 
-    return AllocationAnswer(*_kept(analysed, "allocation", found, _first_table), write=write)
+    return AllocationAnswer(*_kept(analysed, "allocation", result, _first_table), write=write)
 
 
 def sweep(
@@ -481,7 +482,7 @@ def sweep(
     with TemporaryDirectory(prefix="tol3d-") as temporary:
         folder = Path(temporary) if out is None else Path(out)
         how = Order(folder, overrides, workers, trust_parts=trust_parts, run_builders=run_builders)
-        found = swept(loaded, question, how)
+        result = swept(loaded, question, how)
     if picture is not None:
-        named("tol3d.analyses.sweep_picture:draw_sweep")(found, Path(picture))
-    return Variants(sweep_report(found), found, None if picture is None else Picture(Path(picture)))
+        named("tol3d.analyses.sweep_picture:draw_sweep")(result, Path(picture))
+    return Variants(sweep_report(result), result, None if picture is None else Picture(Path(picture)))

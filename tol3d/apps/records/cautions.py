@@ -159,16 +159,16 @@ LEAST_STRAY: Final = 0.01 * ARCSEC  # under which rounding of rows that do not s
 FAR: Final = 4.0  # standard errors by which another place in the long period must be better
 
 
-def refuse_hidden_shift(found: Identified, settings: Settings, half_width: float) -> tuple[str, ...]:
+def refuse_hidden_shift(identified: Identified, settings: Settings, half_width: float) -> tuple[str, ...]:
     """Refuse a back side that lies elsewhere in the long period; a warning if an encoder may be as wrong instead.
 
     Raises:
         InputError: the driven shaft's encoder would be wrong by more than is believed of it.
     """
-    shift = found.shift
+    shift = identified.shift
     if shift is None or shift.turns == 0 or shift.moved < half_width:
         return ()
-    error = found.encoders["encoder 2"].half_width / found.model.quantile
+    error = identified.encoders["encoder 2"].half_width / identified.model.quantile
     if shift.own - shift.least < FAR * error:
         return ()
     text = (
@@ -178,48 +178,48 @@ def refuse_hidden_shift(found: Identified, settings: Settings, half_width: float
     )
     if shift.own > settings.encoder_error:
         raise InputError(
-            f"{found.read['back'][0].path}: {text}. Count the driver's turns on between the sides, or mark both zeros; "
-            "if the encoder is that bad, or pitches of the driven gear deviate by that much once per turn, say so: "
-            f'--encoder-error "{math.ceil(shift.own / ARCSEC)} arcsec"'
+            f"{identified.read['back'][0].path}: {text}. Count the driver's turns on between the sides, or mark both "
+            "zeros; if the encoder is that bad, or pitches of the driven gear deviate by that much once per turn, say "
+            f'so: --encoder-error "{math.ceil(shift.own / ARCSEC)} arcsec"'
         )
     return (text,)
 
 
-def cautions(found: Identified, settings: Settings) -> tuple[str, ...]:
+def cautions(identified: Identified, settings: Settings) -> tuple[str, ...]:
     """All warnings but that of the back side's place in the long period."""
     words = []
-    for side, one_sided in found.alone.items():
+    for side, one_sided in identified.alone.items():
         if one_sided.disagrees:
             words.append(
                 f"the {side} side alone disagrees with both together by {one_sided.apart:.0f} standard errors: it "
                 "reads the encoders' once-per-turn error as eccentricity; use the joint fit"
             )
     for name in ("1", "2"):
-        if found.figures[f"e{name}"].value < found.figures[f"e{name}"].half_width:
+        if identified.figures[f"e{name}"].value < identified.figures[f"e{name}"].half_width:
             words.append(f"e{name} is not told from zero, and theta{name} not known")
-    for name, amplitude in found.encoders.items():
+    for name, amplitude in identified.encoders.items():
         if amplitude.value - amplitude.half_width > settings.encoder_error:
             words.append(
                 f"{name} would be wrong by {amplitude.value / ARCSEC:.1f}″ once per turn, more than is believed of it "
                 f"({settings.encoder_error / ARCSEC:g}″, --encoder-error): do both sides share its zero? Pitches "
                 "that deviate once per turn look alike"
             )
-    words += [*_sparse_rows(found), *_teeth_warnings(found)]
-    if found.fit.low_orders > 1.0:
+    words += [*_sparse_rows(identified), *_teeth_warnings(identified)]
+    if identified.fit.low_orders > 1.0:
         words.append(
-            f"what is left at low orders is {found.fit.low_orders:.1f} times as strong as white noise, "
+            f"what is left at low orders is {identified.fit.low_orders:.1f} times as strong as white noise, "
             "pitches aside (drift, oval shafts, run-out of bearings); intervals are wider for it"
         )
-    words += [*_stray_rows(found), *_torque_warnings(found), *_drift_warnings(found, settings)]
-    return (*words, *_closure_warnings(found, settings))
+    words += [*_stray_rows(identified), *_torque_warnings(identified), *_drift_warnings(identified, settings)]
+    return (*words, *_closure_warnings(identified, settings))
 
 
-def _sparse_rows(found: Identified) -> Iterator[str]:
+def _sparse_rows(identified: Identified) -> Iterator[str]:
     """A warning if rows are too far apart for the relevant orders of tooth mesh."""
-    measured, orders = found.fit.measured, len(found.fit.terms.teeth)
+    measured, orders = identified.fit.measured, len(identified.fit.terms.teeth)
     per_tooth = {  # steps from row to row: one fewer than rows in each pass
         side: (measured.count([side]) - len(passes)) / (measured.pair.driver_teeth * measured.turned[side])
-        for side, passes in found.passes.items()
+        for side, passes in identified.passes.items()
     }
     side = min(per_tooth, key=per_tooth.__getitem__)
     if orders == 2 and round(per_tooth[side], 1) > ROWS_A_TOOTH:
@@ -239,9 +239,9 @@ def _sparse_rows(found: Identified) -> Iterator[str]:
     )
 
 
-def _teeth_warnings(found: Identified) -> Iterator[str]:
+def _teeth_warnings(identified: Identified) -> Iterator[str]:
     """A warning of the effect of deviating pitches on eccentricities, if orders beside theirs show any."""
-    widths_um = [1e3 * found.model.quantile * found.fit.hidden_eccentricity(gear) for gear in (1, 2)]
+    widths_um = [1e3 * identified.model.quantile * identified.fit.hidden_eccentricity(gear) for gear in (1, 2)]
     if any(widths_um):
         yield (
             "pitches of the teeth deviate; once per turn that looks like an eccentricity, in 95 of 100 cases of up to "
@@ -250,10 +250,10 @@ def _teeth_warnings(found: Identified) -> Iterator[str]:
         )
 
 
-def _stray_rows(found: Identified) -> Iterator[str]:
+def _stray_rows(identified: Identified) -> Iterator[str]:
     """Warnings of rows far off all others of their side, with their angle."""
-    for side, residual in found.fit.residual.items():
-        rows, phi1 = found.fit.measured.rows[side], found.fit.measured.points[side].phi1
+    for side, residual in identified.fit.residual.items():
+        rows, phi1 = identified.fit.measured.rows[side], identified.fit.measured.points[side].phi1
         scaled = np.abs(residual) * np.sqrt(rows)
         scatter = MAD * float(np.median(scaled))
         worst = int(np.argmax(scaled))
@@ -266,16 +266,18 @@ def _stray_rows(found: Identified) -> Iterator[str]:
             )
 
 
-def _closure_warnings(found: Identified, settings: Settings) -> tuple[str, ...]:
+def _closure_warnings(identified: Identified, settings: Settings) -> tuple[str, ...]:
     """Warnings of closure errors, less the linear drift if one is fitted along."""
     if not settings.drift:
-        return tuple(what_is_open(found.closure, found.fit))
-    return tuple(what_is_open(closures(found.fit, found.specimen, found.passes, but_drift=True), found.fit))
+        return tuple(what_is_open(identified.closure, identified.fit))
+    return tuple(
+        what_is_open(closures(identified.fit, identified.specimen, identified.passes, but_drift=True), identified.fit)
+    )
 
 
-def _torque_warnings(found: Identified) -> tuple[str, ...]:
-    torques = [one_pass.torques for passes in found.passes.values() for one_pass in passes]
-    if found.fit.terms.winding or not any(torques):
+def _torque_warnings(identified: Identified) -> tuple[str, ...]:
+    torques = [one_pass.torques for passes in identified.passes.values() for one_pass in passes]
+    if identified.fit.terms.winding or not any(torques):
         return ()
     return (
         "all rows have one torque, or some files none: the backlash is that under load, with the shafts' winding T/k "
@@ -283,14 +285,14 @@ def _torque_warnings(found: Identified) -> tuple[str, ...]:
     )
 
 
-def _drift_warnings(found: Identified, settings: Settings) -> tuple[str, ...]:
+def _drift_warnings(identified: Identified, settings: Settings) -> tuple[str, ...]:
     if settings.drift:
         return ()
-    fit, words = found.fit, []
+    fit, words = identified.fit, []
     values, errors = with_drift(fit)
     for side, value, error in zip(fit.terms.sides, values, errors, strict=True):
         over = abs(float(value)) * TURN * fit.measured.turned[side]
-        if abs(value) > FAR * error and over > found.least.backlash.half_width:
+        if abs(value) > FAR * error and over > identified.least.backlash.half_width:
             words.append(
                 f"the {side} side drifts by {over / ARCSEC:.2f}″ while it is measured; --drift fits that along"
             )

@@ -176,8 +176,8 @@ class FclEngine:
             back[..., side, :][at] = frames.apply(turn, put_back)
             curvature[..., side][at] = bent
             at_end[at] |= ends
-        found = Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh), at_end)
-        return found.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
+        result = Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh), at_end)
+        return result.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
 
     def _shapes(self, build: Build, seat: int, rows: Teeth, teeth: Teeth, flank: Flank) -> list[Numbers]:
         """Single-flank coefficients of a gear for the requested pairs (pairs,)."""

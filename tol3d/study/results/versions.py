@@ -31,14 +31,14 @@ def refuse_other_versions(versions: Versions, requires: Sequence[str] = ()) -> N
     Raises:
         RunError: a package has another version here, or the processor is of another kind.
     """
-    of_run, here = dict(versions), dict(installed_versions(requires))
+    of_run, installed = dict(versions), dict(installed_versions(requires))
     pairs = {
-        name: unlike(here.get(name), of_run.get(name))
-        for name in {**of_run, **here}
-        if here.get(name) != of_run.get(name)
+        name: unlike(installed.get(name), of_run.get(name))
+        for name in {**of_run, **installed}
+        if installed.get(name) != of_run.get(name)
     }
     if pairs:
-        other = "; ".join(f"{name} {installed} instead of {wanted}" for name, (installed, wanted) in pairs.items())
+        other = "; ".join(f"{name} {present} instead of {wanted}" for name, (present, wanted) in pairs.items())
         raise RunError(
             f"a worker has {other}: results could differ in the last bit; install the same packages there, and start "
             "the run on a machine with the workers' kind of processor"
