@@ -4,16 +4,16 @@
     run = tol3d.run_scene("spur_pair")
     run.frame()
 
-Names are loaded when they are first used, so that `import tol3d` and `tol3d --help` stay quick. docs/python.md shows
-every one of them at work.
+Names are loaded at their first use, so that `import tol3d` and `tol3d --help` stay quick. docs/python.md shows each of
+them in use.
 """
 
 import sys
 
-# Python looks for `python -m tol3d.…` in the current folder first, where anybody's numpy.py may lie; once tol3d is
-# found, and before it imports anything, that folder is left out.
-if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:  # what argv is while the module to run is sought
-    word = sys.orig_argv[-len(sys.argv)]  # the module, or "-mtol3d.cli" in one
+# `python -m tol3d.…` puts the current folder first on the path, where anybody's numpy.py may lie; it is removed here,
+# before tol3d imports anything.
+if sys.argv[:1] == ["-m"] and not sys.flags.safe_path:  # argv is so while Python searches for the module to run
+    word = sys.orig_argv[-len(sys.argv)]  # the module, or "-mtol3d.cli" in one word
     if (word.partition("m")[2] if word.startswith("-") else word).partition(".")[0] == __name__:
         del sys.path[0]
 
@@ -76,8 +76,8 @@ _HOMES = {
     "view_trial": "tol3d.notebook",
     "write_report": "tol3d.notebook",
 }
-"""Module of each public name, and its name there if it has another. Names that functions return or raise, and gears,
-serve annotations and `except`."""
+"""Module of each public name, and after a colon its name there if that differs. Classes that functions return or raise
+are for annotations and `except`."""
 
 __all__ = [
     "Overrides",
@@ -101,11 +101,11 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return version("tol3d")
-    if name == "Scene":  # of every kind that is known by now
+    if name == "Scene":  # of all kinds registered so far
         return import_module("tol3d.kinds").all_kinds().scene
     if name in _HOMES:
-        module, _, called = _HOMES[name].partition(":")
-        return getattr(import_module(module), called or name)
+        module, _, name_there = _HOMES[name].partition(":")
+        return getattr(import_module(module), name_there or name)
     raise AttributeError(f"module 'tol3d' has no attribute {name!r}")
 
 

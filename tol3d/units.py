@@ -38,7 +38,7 @@ FACTORS: Final[dict[Dimension, dict[str, float]]] = {
     "mass": {"kg": 1.0, "g": 1e-3, "t": 1e3},
     "count": {"pins": 1.0, "pin": 1.0},
 }
-"""One of each unit in mm, rad, K, 1/K, N, N/mm or kg; counts are numbers of what is counted."""
+"""Value of one of each unit in mm, rad, K, 1/K, N, N/mm or kg; counts are plain numbers."""
 
 EXAMPLES: Final[dict[Dimension, str]] = {
     "length": "4.5 um",
@@ -71,7 +71,7 @@ LARGEST: Final[dict[Dimension, float]] = {
     "count": 1e6,
 }
 """Largest quantity in a scene [mm, rad, K, 1/K, N, N/mm, kg, 1]: a kilometre, 1600 turns; products stay finite."""
-LEAST_POSITIVE: Final = 1e-9  # mm or rad; a thousandth of an atom, a nanometre at a kilometre
+LEAST_POSITIVE: Final = 1e-9  # mm or rad; a hundredth of an atom, a micrometre at a kilometre
 ABSOLUTE_ZERO: Final = -293.15  # K from 20 degC, from which temperatures count
 MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
 PRINTED_SIGNS: Final = MICRO_SIGNS | str.maketrans({"−": "-"})  # also the minus of pictures
@@ -89,7 +89,7 @@ DECIMAL_COMMA: Final = re.compile(r"\s*([+-]?\d+),(\d+(?:[eE][+-]?\d+)?)\s*(\S*)
 COMMA_SEPARATES: Final = "write decimals with a point: a comma starts a new entry"
 BARE_NUMBER: Final = re.compile(rf"\s*{NUMBER}\s*")
 WRITTEN_DIGITS: Final = 10  # of what is computed and written for users
-KEPT: Final = 4096  # quantities of which a text is read once
+KEPT: Final = 4096  # texts of quantities that are parsed once and kept
 LONGEST_TEXT: Final = 100  # characters of a quantity; seventeen digits and a unit are far shorter
 RESOLVED: Final = 1e-9
 """mm or rad; methods promise to resolve no less: flanks at angles of many turns are rounded to some 1e-10 mm."""
@@ -126,7 +126,7 @@ class Quantity:
         return Quantity(float(f"{internal / FACTORS[self.dimension][self.unit]:.{WRITTEN_DIGITS}g}"), self.unit)
 
     def __str__(self) -> str:
-        """Quantity as a user may write it, with as few digits as give the same number back."""
+        """Number and unit, with the fewest digits that give the same number back."""
         short = f"{self.number:g}"
         return f"{short if float(short) == self.number else repr(self.number)} {self.unit}"
 
@@ -143,7 +143,7 @@ class Quantity:
             raise ValueError(f"got {shown(text)}")
         if isinstance(text, int | float) or BARE_NUMBER.fullmatch(text[:LONGEST_TEXT]):
             raise ValueError(f"got {shown(text)}, a bare number without its unit")
-        return _parsed(text) if len(text) <= LONGEST_TEXT else _parsed.__wrapped__(text)
+        return _parsed(text) if len(text) <= LONGEST_TEXT else _parsed.__wrapped__(text)  # no long text is kept
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
@@ -156,7 +156,7 @@ class Quantity:
 
 @lru_cache(maxsize=KEPT)
 def _parsed(text: str) -> Quantity:
-    """See Quantity.parse; scenes say the same few lengths over and over."""
+    """See Quantity.parse; kept, because scenes repeat the same few lengths."""
     plain = text.translate(PRINTED_SIGNS)
     match = NUMBER_UNIT.fullmatch(plain) if len(text) <= LONGEST_TEXT else None
     if len(text) <= LONGEST_TEXT and ANGLE.fullmatch(plain):
@@ -183,12 +183,12 @@ def summed(terms: Iterable[tuple[int, Quantity]]) -> Quantity:
     >>> str(summed([(1, Quantity(0.1, "mm")), (2, Quantity(0.1, "mm"))]))
     '0.3 mm'
     """
-    several = [(times, Decimal(repr(own.number)), own) for times, own in terms]
-    units = dict.fromkeys(own.unit for _, _, own in several)
+    several = [(times, Decimal(repr(quantity.number)), quantity) for times, quantity in terms]
+    units = dict.fromkeys(quantity.unit for _, _, quantity in several)
     if len(units) == 1:
         return Quantity(float(sum(times * number for times, number, _ in several)), *units)
     table = FACTORS[several[0][2].dimension]
-    total = sum(times * number * Decimal(repr(table[own.unit])) for times, number, own in several)
+    total = sum(times * number * Decimal(repr(table[quantity.unit])) for times, number, quantity in several)
     return Quantity(float(total), next(iter(table)))
 
 
@@ -228,8 +228,8 @@ def refuse_dimension(quantity: Quantity, expected: tuple[Dimension, ...], field:
 
     Args:
         quantity: the given one.
-        expected: allowed units.
-        field: dotted name of the field below the one that is validated; "" is that one itself.
+        expected: allowed dimensions.
+        field: dotted name of the field within the one that is validated; "" is that one itself.
 
     Raises:
         PydanticCustomError: "wrong_dimension", for a pydantic validator to pass on.
@@ -257,7 +257,7 @@ def expectation(*dimensions: Dimension) -> str:
 
 
 def shown(value: object) -> str:
-    """A value that came, short and printable, for messages."""
+    """A received value, short and printable, for messages."""
     if value is None:
         return "nothing"
     if isinstance(value, bool):
@@ -293,7 +293,7 @@ def _quantity_schema(dimensions: tuple[Dimension, ...]) -> core_schema.CoreSchem
 
 
 def _base_unit(dimension: Dimension) -> str:
-    """The unit inside: mm, rad, K, 1/K."""
+    """Unit of internal values, such as mm or rad."""
     return next(iter(FACTORS[dimension]))
 
 
@@ -306,7 +306,7 @@ def _value_refused(expected: str, quantity: Quantity) -> PydanticCustomError:
 def _json_schema(*dimensions: Dimension) -> dict[str, Any]:
     named = [re.sub("^u", "[uµμ]", re.escape(unit)) for dimension in dimensions for unit in FACTORS[dimension]]
     angles = [rf"^\s*{SEXAGESIMAL}\s*$"] if "angle" in dimensions else []
-    units, without_digit = "|".join(named), "|".join(own for own in named if not own[0].isdigit())
+    units, without_digit = "|".join(named), "|".join(unit for unit in named if not unit[0].isdigit())
     return {
         "type": "string",
         "title": " or ".join(dimensions),
@@ -316,7 +316,7 @@ def _json_schema(*dimensions: Dimension) -> dict[str, Any]:
 
 
 def angle_text(angle: float) -> str:
-    """An angle [rad] as gear people read it, degrees, minutes and seconds of arc.
+    """An angle [rad] in degrees, minutes and seconds of arc, to a tenth of a second.
 
     >>> angle_text(math.radians(1 / 60 + 25.2 / 3600)), angle_text(math.radians(-7.0192))
     ('1′25.2″', '-7°01′09.1″')

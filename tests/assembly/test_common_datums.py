@@ -73,6 +73,7 @@ def test_what_lies_to_a_common_datum_of_three_is_inspected_within_its_zone(tmp_p
     [
         (OFF, ALL, "the centres of the common datum bore 1-bore 2-bore 3 lie off a line nominally, by 2.4"),
         (SAME, ALL, "two features of the common datum bore 1-bore 2-bore 3 have one centre: name one"),
+        (SAME, "bore 2-bore 3", "two features of the common datum bore 2-bore 3 have one centre: name one"),
         (ON, "bore 1-bore 2-bore 2", "expected each feature once, got bore 1-bore 2-bore 2"),
         (ON, "bore 1-bore 2-bore 4", "bore 4"),
         (ON, "{feature: bore 1-bore 2, simulator: fitted, mmb: random}", "it at holes, pins, slots or tabs"),

@@ -177,6 +177,10 @@ def test_the_plan_is_printed_and_written(tol3d: Command, tmp_path: Path) -> None
     [
         (("--turns", "2;4"), "--turns: expected numbers from 0.1 to 10000 between commas, such as 2,4,16, got '2;4'"),
         (("--noise", "0.5"), "--noise: expected an angle with its unit"),
+        (("--noise", "1e999 arcsec"), "--noise: expected an angle with its unit"),  # not finite
+        (("--noise", "1 arcsec" + 99 * " " + "wrong"), "--noise: expected an angle with its unit"),
+        (("--noise", "-1 arcsec"), "--noise: expected 0 or more, got '-1 arcsec'"),
+        (("--resolution", "-1 urad"), "--resolution: expected 0 or more, got '-1 urad'"),
         (("--e1", "3 arcsec"), "--e1: expected a length with its unit"),
     ],
 )

@@ -198,7 +198,7 @@ def test_a_target_takes_the_faces_of_the_feature_that_it_is_on() -> None:
 
 def dimension(more: str) -> str:
     (found,) = read(f"#200=DIMENSIONAL_CHARACTERISTIC_REPRESENTATION(#100,#201);{more}").dimensions
-    return str(found) + "".join(f" {each}" for each in found.notes)
+    return str(found)
 
 
 def value(identifier: int, number: float, name: str = "nominal value", qualifiers: str = "") -> str:
@@ -224,7 +224,7 @@ SIZE = "#100=DIMENSIONAL_SIZE(#23,'diameter');#201=SHAPE_DIMENSION_REPRESENTATIO
             SIZE
             + value(202, 8.0, qualifiers="QUALIFIED_REPRESENTATION_ITEM((#203))")
             + "#203=TYPE_QUALIFIER('maximum');",
-            "⌀8 maximum",
+            "⌀8 MAX",
         ),
         (
             "#100=(DIMENSIONAL_SIZE(#23,'')DIMENSIONAL_SIZE_WITH_PATH(#21));"

@@ -202,10 +202,10 @@ def test_measures_that_lack_trials_are_regressed_on_those_that_they_have(tmp_pat
     measures, name = system.measures, system.measures[0].name
     values = {(method, own.name): columns[f"{method}:{own.name}"].copy() for own in measures for method in METHODS}
     values[GEOMETRIC, name][~good] = np.nan
-    found, _ = target_sums(Simulation(system, Study()), measures, columns, values, plain_products)
+    found, _ = target_sums(Simulation(system, Study()), columns, values, plain_products)
     others = {key: own[good] for key, own in columns.items()}
     expected, _ = target_sums(
-        Simulation(system, Study()), measures, others, {key: own[good] for key, own in values.items()}, plain_products
+        Simulation(system, Study()), others, {key: own[good] for key, own in values.items()}, plain_products
     )
     mine, its = found[GEOMETRIC, name], expected[GEOMETRIC, name]
     assert isinstance(mine, IndependentSums)

@@ -1,9 +1,10 @@
-"""Tolerances at least cost for a fraction out of limits: by first-order gradients, corrected until trials confirm.
+"""Tolerances of least cost for a fraction out of limits: by first-order gradients, corrected until trials confirm.
 
 Fractions out of limits and their slopes by each factor come from design points (FORM), and the least cost from
 sequential quadratic programming in the logarithms of the factors, with tangents in place of the mechanism. At the
-solution design points and tangents are found again. First order may be off by a factor: importance sampling finds it,
-the target is corrected, and so on until the result is confirmed. The last sampling, with another seed, is reported.
+solution, design points and tangents are computed again. First order may be off by a factor: importance sampling
+estimates it and the target is corrected, until the result is confirmed. The last sampling, with another seed, is
+reported.
 """
 
 import math
@@ -27,37 +28,42 @@ from tol3d.numerics.arrays import Array
 from tol3d.study.runs.summary.values import made
 
 ROUNDS: Final = 8
+"""Most solutions by first order, each corrected by sampling."""
 TRIMS: Final = 8
+"""Most samplings of a round, by which its solution is trimmed."""
 NARROW: Final = 1e-3
-"""A bracket of trims, in logarithms of factors."""
+"""Width of a bracket of trims that is narrow enough, in logarithms of factors."""
 BETWEEN: Final = (0.15, 0.85)
-"""Shares of a bracket between which the next trim lies."""
+"""Fractions of a bracket between which the next trim lies."""
 MIDDLE: Final = 0.993
 """Fraction of the target that trims aim at."""
 LONGEST: Final = 0.3
-"""A trim, in logarithms of factors."""
+"""Largest trim, in logarithms of factors."""
 LESS: Final = 2e-3
-"""Fraction of the cost by which another round has to be cheaper."""
+"""Fraction of the cost that another round has to save."""
 AIM: Final = 0.995
 """Fraction of the target to aim at, so that the result is rather below."""
 NEAR: Final = 0.97
 """Fraction of the target that is near enough."""
 DAMPING: Final = 0.8
+"""Part of the error of first order that a round corrects."""
 DRAWS: Final = 12_000
 DIGITS: Final = 4
-"""Digits of factors, which are rounded down."""
+"""Decimals of factors, which are rounded down."""
 AT_BOUND: Final = 1e-6
+"""Distance from a bound below which a factor lies at it, in logarithms."""
 CURVE: Final = (0.1, 0.3, 3.0, 10.0)
 """Fractions of the target at which the cost is reported too."""
 PASSES: Final = 2
-"""Over tangents, for each point of the curve."""
+"""Solutions for each point of the curve, each with new tangents."""
 LOOKS: Final = 3
 """Final checks; after each that fails the search goes on below the target."""
 SURE: Final = 1.03
-"""Largest result of the last check, over the target."""
+"""Largest accepted result of a final check, over the target."""
 FAR: Final = 0.02
-"""Fraction of a target: a first-order result below that is within reach, however far it is off."""
+"""Fraction of a target: if first order is below it at the lower bounds, the target can be reached."""
 STRAIGHT: Final = 1e-3
+"""Slack of comparisons of fractions and of factors, in logarithms; of rounding, in units of the last decimal."""
 
 
 def allocation(
@@ -69,64 +75,64 @@ def allocation(
     seed: int = 1,
     activity: Callable[[str], None] = lambda text: None,
 ) -> Allocation:
-    """The least cost for shares out of limits.
+    """Tolerances of least cost for fractions out of limits.
 
     Args:
         response: with the tolerances of the scene.
         targets: one per measure.
         question: costs, bounds, limits that stay.
-        draws: of importance sampling, each time.
-        seed: of it; the final check has another one.
-        activity: callback that gets what goes on, in words.
+        draws: of each importance sampling; the final checks have twice as many.
+        seed: of importance sampling; the final checks have the next one.
+        activity: progress callback.
 
     Raises:
         InputError: no target, a measure without such limits, nothing to scale, or a target that no factors reach.
     """
-    asked, before = question or Question(), response.evaluations
+    before = response.evaluations
     targets = [with_sides(response, target) for target in targets]
     if not targets:
         raise InputError("expected a measure with limits, got none")
     if response.rough:
         words = "expected contributors with a smooth map from normals, from which slopes of the ppm are known"
         raise InputError(f"{words}, got {', '.join(response.rough)}; ask tol3d what-if of single changes")
-    search, held = begun(response, targets, asked)
+    search, held = begun(response, targets, question or Question())
     wanted = np.log([1e-6 * target.ppm for target in targets])
     activity("the tightest tolerances")
     _refuse_out_of_reach(search, draws, seed)
     zero = np.zeros(len(search.low))
-    scene = _sampled(search, zero, draws, seed)
+    at_scene = _sampled(search, zero, draws, seed)
     rounds = _Rounds(search, draws, seed, activity, np.zeros(len(targets)))
     activity("equal factors")
     equal = rounds.solved(equal_factors, zero, wanted, 2)
-    x, last = equal, []
+    x, checked = equal, []
     goal = wanted
     for _ in range(LOOKS):
         x = _rounded(search, rounds.solved(least_cost, x, goal))
         activity("confirmation")
-        last = _looked(search, x, 2 * draws, seed + 1)
-        off = np.log([max(own.probability, TINY) for own in last]) - wanted
+        checked = _checked(search, x, 2 * draws, seed + 1)
+        off = np.log([max(fraction.probability, TINY) for fraction in checked]) - wanted
         if float(off.max()) <= math.log(SURE):
             break
         goal = goal - np.maximum(off, 0.0)
     search.move_to(x)
-    first = np.exp(search.probabilities(x, slopes=False)[0])
+    first_order = np.exp(search.probabilities(x, slopes=False)[0])
     curve = _trade_off(search, rounds.shift, x)
     return made(
         Allocation,
         targets=[
             made(
                 TargetFound,
-                measure=own.measure,
-                sides=list(own.sides),
-                wanted=own.ppm,
-                scene=_ppm(float(at_scene)),
+                measure=target.measure,
+                sides=list(target.sides),
+                wanted=target.ppm,
+                scene=_ppm(float(scene)),
                 first_order=_ppm(float(formed)),
-                ppm=_ppm(found.probability),
-                interval=[_ppm(end) for end in found.interval],
+                ppm=_ppm(fraction.probability),
+                interval=[_ppm(end) for end in fraction.interval],
             )
-            for own, at_scene, formed, found in zip(targets, scene, first, last, strict=True)
+            for target, scene, formed, fraction in zip(targets, at_scene, first_order, checked, strict=True)
         ],
-        tolerances=_told(search, x, held),
+        tolerances=_allocated(search, x, held),
         cost=search.cost(x),
         scene_cost=search.cost(zero),
         equal_factor=float(np.exp(equal.max())),
@@ -139,7 +145,7 @@ def allocation(
 
 
 def _rounded(search: Search, x: Array) -> Array:
-    """Factors of a few digits, rounded down; grades stay."""
+    """Logarithms of factors rounded down to DIGITS decimals; grades stay."""
     down = np.log(np.floor(10**DIGITS * np.exp(x) + STRAIGHT) / 10**DIGITS)
     return np.where(is_graded(search), x, np.maximum(down, search.low))
 
@@ -149,61 +155,69 @@ def _ppm(probability: float) -> float:
 
 
 @dataclass(frozen=True)
-class _Seen:
+class _Fraction:
+    """Fraction out of limits by sampling, with its 95 % interval."""
+
     probability: float
     interval: tuple[float, float]
 
 
 def _sampled(search: Search, x: Array, draws: int, seed: int) -> Array:
-    """Fractions out of limits (targets,) by importance sampling about the design points, always from a seed."""
+    """Fractions out of limits (targets,) by importance sampling about the design points, with the same seed."""
     search.move_to(x)
-    each = {key: own.sampled(draws, seed)[0] for key, own in search.points.items()}
-    return np.array([math.fsum(each[key] for key in search.keys(target)) for target in search.targets])
+    fractions = {key: points.sampled(draws, seed)[0] for key, points in search.points.items()}
+    return np.array([math.fsum(fractions[key] for key in search.keys(target)) for target in search.targets])
 
 
-def _looked(search: Search, x: Array, draws: int, seed: int) -> list[_Seen]:
-    """The same for each target by itself; for both limits the sum."""
-    other = search.scaled(x)
-    found = []
+def _checked(search: Search, x: Array, draws: int, seed: int) -> list[_Fraction]:
+    """Fraction out of limits of each target, by design points searched anew; of both limits the sum."""
+    scaled = search.scaled(x)
+    fractions = []
     for target in search.targets:
-        alone = other.of(target.measure)
+        alone = scaled.of(target.measure)
         limits = limits_of(alone.measures[0])
         events = [rare_event(alone, side, limits[side], draws=draws, seed=seed) for side in target.sides]
         total = math.fsum(event.probability for event in events)
         ends = [math.hypot(*(event.interval[end] - event.probability for event in events)) for end in (0, 1)]
-        found.append(_Seen(total, (max(0.0, total - ends[0]), min(1.0, total + ends[1]))))
-    return found
+        fractions.append(_Fraction(total, (max(0.0, total - ends[0]), min(1.0, total + ends[1]))))
+    return fractions
 
 
 def _refuse_out_of_reach(search: Search, draws: int, seed: int) -> None:
+    """Refuse targets that are not reached with every factor at its lower bound.
+
+    Raises:
+        InputError: with the nearest fraction.
+    """
     search.move_to(search.low)
     formed = np.exp(search.probabilities(search.low, slopes=False)[0])
     search.move_to(np.zeros(len(search.low)))
-    if all(own < FAR * 1e-6 * target.ppm for own, target in zip(formed, search.targets, strict=True)):
+    if all(fraction < FAR * 1e-6 * target.ppm for fraction, target in zip(formed, search.targets, strict=True)):
         return
-    for target, found in zip(search.targets, _looked(search, search.low, draws, seed), strict=True):
-        if found.probability > 1e-6 * target.ppm:
+    for target, nearest in zip(search.targets, _checked(search, search.low, draws, seed), strict=True):
+        if nearest.probability > 1e-6 * target.ppm:
             sides = " and ".join(target.sides)
             raise InputError(
                 f"{target.measure}: expected a ppm that factors within their bounds reach, got {target.ppm:g}; the "
-                f"nearest beyond the {sides} limit is {1e6 * found.probability:.3g} ppm, with every factor at its "
+                f"nearest beyond the {sides} limit is {1e6 * nearest.probability:.3g} ppm, with every factor at its "
                 f"lower bound; lower the bounds, ask for more ppm, or freeze fewer"
             )
 
 
 Solve = Callable[[Search, Array, Array], Array]
+"""From the logarithms of fractions wanted (targets,) and of factors to begin with, those of the solution."""
 
 
 @dataclass(eq=False)
 class _Rounds:
-    """Solutions by first order whose target is moved until sampling confirms them.
+    """Solutions by first order, whose target is moved until sampling confirms them.
 
     Args:
         search: the search.
         draws, seed: of importance sampling.
-        tell: callback that gets what goes on, in words.
-        shift: by how much first order is off (targets,), in logarithms.
-        count: of rounds.
+        tell: progress callback.
+        shift: logarithm of the sampled fraction over that of first order (targets,).
+        count: number of samplings so far.
     """
 
     search: Search
@@ -214,93 +228,94 @@ class _Rounds:
     count: int = 0
 
     def solved(self, solve: Solve, x: Array, wanted: Array, most: int = ROUNDS) -> Array:
-        """Factors that reach the wanted logarithms of fractions (targets,) by sampling.
+        """Logarithms of factors that reach the wanted logarithms of fractions (targets,) by sampling.
 
-        It ends when another round costs no less.
+        It ends if another round saves no cost, or after `most`.
         """
         best: tuple[float, Array] | None = None
         for _ in range(most):
             x = solve(self.search, wanted + math.log(AIM) - self.shift, x)
-            x, seen = self._trimmed(x, wanted)
+            x, sampled = self._trimmed(x, wanted)
             cost = self.search.cost(x)
-            if float((seen - wanted).max()) <= STRAIGHT:
+            if float((sampled - wanted).max()) <= STRAIGHT:
                 if best is not None and cost > best[0] - LESS * abs(best[0]):
                     break
                 best = cost, x
             formed = self.search.probabilities(x, slopes=False)[0]
-            self.shift = self.shift + DAMPING * (seen - formed - self.shift)
+            self.shift = self.shift + DAMPING * (sampled - formed - self.shift)
         return x if best is None else best[1]
 
     def _trimmed(self, x: Array, wanted: Array) -> tuple[Array, Array]:
-        """Factors a little tighter or looser, alike for all at no bound, and their results by sampling.
+        """Factors a little tighter or looser, by one factor for all at no bound, and their fractions by sampling.
 
-        By secants, between a fraction that is too large and one that is not as soon as both are known: where laws have
-            limits the fraction drops abruptly.
+        By secants; as soon as a fraction that is too large and one that is not are known, between these, because the
+        fraction drops abruptly where laws have limits.
         """
         begun, at, free = x, 0.0, np.zeros(0, dtype=bool)
         sides: dict[bool, tuple[float, float, Array, Array]] = {}
         graded = bool(is_graded(self.search).any())
         for _ in range(TRIMS):
             self.count += 1
-            seen = np.log(np.maximum(_sampled(self.search, x, self.draws, self.seed), TINY))
-            off = float((seen - wanted).max())
+            sampled = np.log(np.maximum(_sampled(self.search, x, self.draws, self.seed), TINY))
+            off = float((sampled - wanted).max())
             self.tell(f"round {self.count}: cost {self.search.cost(x):.4g}, {math.exp(off):.3g} of the ppm")
             before = sides.get(off <= STRAIGHT)
-            sides[off <= STRAIGHT] = at, off, x, seen
+            sides[off <= STRAIGHT] = at, off, x, sampled
             loosest = off <= 0.0 and bool((x >= self.search.high - AT_BOUND).all())
             if graded or loosest or math.log(NEAR) <= off <= STRAIGHT:
                 break
             if not free.size:
                 free = self._free(x, off)
             if len(sides) > 1:
-                (low, its, *_), (high, other, *_) = sides[True], sides[False]
+                (low, low_off, *_), (high, high_off, *_) = sides[True], sides[False]
                 if abs(high - low) < NARROW:
                     break
-                share = (math.log(MIDDLE) - its) / (other - its)
+                share = (math.log(MIDDLE) - low_off) / (high_off - low_off)
                 at = low + float(np.clip(share, *BETWEEN)) * (high - low)
             else:
-                rate = self._rate(x, seen - wanted, free) if before is None else (off - before[1]) / (at - before[0])
+                rate = self._rate(x, sampled - wanted, free) if before is None else (off - before[1]) / (at - before[0])
                 if rate <= 0.0:
                     break
                 at += float(np.clip((math.log(MIDDLE) - off) / rate, -LONGEST, LONGEST))
             x = np.clip(np.where(free, begun + at, begun), self.search.low, self.search.high)
-        _, _, x, seen = sides[True] if True in sides else sides[False]
-        return x, seen
+        _, _, x, sampled = sides[True] if True in sides else sides[False]
+        return x, sampled
 
     def _free(self, x: Array, off: float) -> NDArray[np.bool_]:
-        """Factors at no bound; where all are at one, those that can move."""
+        """True for factors at no bound; if all are at one, for those that can move the right way."""
         below, above = x > self.search.low + AT_BOUND, x < self.search.high - AT_BOUND
         between = below & above
         return between if between.any() else above if off < 0.0 else below
 
     def _rate(self, x: Array, off: Array, free: NDArray[np.bool_]) -> float:
-        """First-order slope of the logarithm of the fraction that is most off, with all free factors."""
+        """First-order slope of the logarithm of the fraction that is most off, by that of all free factors together."""
         slopes = self.search.probabilities(x)[1][int(np.argmax(off))]
         return float(slopes[free].sum())
 
 
 def _trade_off(search: Search, shift: Array, x: Array) -> list[CostAt]:
-    """The least cost for other shares, all targets' alike, by first order as it was corrected at the target."""
+    """The least cost for other fractions, all targets scaled alike, by first order as corrected at the target."""
     wanted = np.log([1e-6 * target.ppm for target in search.targets])
     first = search.targets[0].ppm
-    found = [made(CostAt, ppm=first, cost=search.cost(x))]
+    costs = [made(CostAt, ppm=first, cost=search.cost(x))]
     for times in CURVE:
         if first * times >= MOST_PPM:
             continue
         goal = wanted + math.log(times) - shift
-        own = x
+        factors = x
         for _ in range(PASSES):
-            own = least_cost(search, goal, own)
-            search.move_to(own)
-        reached = bool((search.probabilities(own, slopes=False)[0] <= goal + 10 * STRAIGHT).all())
-        found.append(made(CostAt, ppm=first * times, cost=search.cost(own) if reached else None))
-    return sorted(found, key=lambda own: own.ppm)
+            factors = least_cost(search, goal, factors)
+            search.move_to(factors)
+        reached = bool((search.probabilities(factors, slopes=False)[0] <= goal + 10 * STRAIGHT).all())
+        costs.append(made(CostAt, ppm=first * times, cost=search.cost(factors) if reached else None))
+    return sorted(costs, key=lambda cost_at: cost_at.ppm)
 
 
-def _told(search: Search, x: Array, held: Mapping[str, tuple[str, str]]) -> dict[str, Allocated]:
-    response, other = search.response, search.scaled(x)
+def _allocated(search: Search, x: Array, held: Mapping[str, tuple[str, str]]) -> dict[str, Allocated]:
+    """Factors, costs and laws of all tolerances, those held by their words, too."""
+    response, scaled = search.response, search.scaled(x)
     by_name = {contributor.name: contributor for contributor in response.contributors}
-    found = {}
+    allocated = {}
     for k, (name, factor) in enumerate(search.factors(x).items()):
         first = search.groups[name][0]
         bounds = search.question.own_bounds.get(name, search.question.bounds)
@@ -309,22 +324,22 @@ def _told(search: Search, x: Array, held: Mapping[str, tuple[str, str]]) -> dict
             words = "upper bound" if factor >= bounds[1] - STRAIGHT else "at its physical least"
         elif x[k] <= search.low[k] + STRAIGHT:
             words = "lower bound" if factor <= bounds[0] + STRAIGHT else "refined: no tighter"
-        found[name] = made(
+        allocated[name] = made(
             Allocated,
             factor=factor,
             cost=search.question.costs.of(name).of(factor),
             before=told(by_name[first], response.drawn_by(first)),
-            after=told(by_name[first], other.drawn_by(first)),
+            after=told(by_name[first], scaled.drawn_by(first)),
             held=words,
         )
     for name, (first, words) in held.items():
         law = told(by_name[first], response.drawn_by(first))
-        found[name] = made(Allocated, factor=1.0, cost=0.0, before=law, after=law, held=words)
-    return found
+        allocated[name] = made(Allocated, factor=1.0, cost=0.0, before=law, after=law, held=words)
+    return allocated
 
 
 def ppm_of_ppk(ppk: float) -> float:
-    """The share beyond one limit [ppm] that a Ppk stands for: Φ(-3 Ppk).
+    """Fraction beyond one limit [ppm] of a normal distribution with that Ppk: Φ(-3 Ppk).
 
     >>> round(ppm_of_ppk(1.33), 1)
     33.0

@@ -1,6 +1,6 @@
-"""Analyses as functions, with the words of their commands; what they find as tables, frames of pandas and objects.
+"""Analyses as functions, named like their commands; results as tables, frames of pandas and objects.
 
-A function asks its question of a scene or a run, and keeps the answer in the run, as its command does.
+A function analyses a scene or a run, and keeps the answer in the run, as its command does.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -66,20 +66,20 @@ Activity = Callable[[str], None]
 
 
 def silent(text: str) -> None:
-    """Shows no progress."""
+    """Show no progress."""
 
 
 @dataclass(frozen=True, repr=False)
 class Answer(Report, Generic[Found]):
-    """Findings of an analysis.
+    """Result of an analysis.
 
     Args:
         found: its numbers as an object, in the units of the measures.
-        numbers: makes the tables of its frame, by measure, or "" for one table of all.
+        numbers: makes the tables of its frame, by measure, or by "" one table of all.
         charts: makes its charts.
-        kept: file in the run; None of a scene.
+        kept: file in the run; None if a scene was analysed.
         warnings: remarks for the user.
-        whole: True if the tables of the frame are not printed, and written by --csv in place of what is.
+        whole: True if the tables of the frame are not printed; --csv then writes them instead of the printed ones.
     """
 
     found: Found
@@ -91,10 +91,10 @@ class Answer(Report, Generic[Found]):
 
     def csv(self) -> str:
         """Numbers as its command writes them by --csv."""
-        return "\n".join(number.csv() for number in self.numbers().values()) if self.whole else super().csv()
+        return "\n".join(table.csv() for table in self.numbers().values()) if self.whole else super().csv()
 
     def frame(self) -> "DataFrame":
-        """Its main table as a DataFrame of pandas, with all digits; of several measures their tables, one column more.
+        """Its main table as a DataFrame of pandas, with all digits; tables of several measures have a column for them.
 
         Raises:
             MissingPackageError: pandas is not installed.
@@ -109,10 +109,10 @@ class Answer(Report, Generic[Found]):
 
 @dataclass(frozen=True, repr=False)
 class RareAnswer(Answer[RareEvents]):
-    """Rare events.
+    """Result of an analysis of rare events.
 
     Args:
-        events: as they were found, with all design points.
+        events: one per measure and limit, with all design points.
     """
 
     events: tuple[RareEvent, ...] = ()
@@ -135,7 +135,7 @@ class OtherTolerances(Answer[Found]):
         """The scene with the other tolerances.
 
         Raises:
-            InputError: one whose width the scene states in no numbers.
+            InputError: the scene does not state the width of a tolerance by numbers.
         """
         assert self.write is not None
         return self.write()
@@ -149,28 +149,28 @@ class OtherTolerances(Answer[Found]):
 
 @dataclass(frozen=True, repr=False)
 class Variants(Report):
-    """Variants of a scene.
+    """Result of a sweep over variants of a scene.
 
     Args:
         found: their numbers.
-        picture: None where none was asked for.
+        picture: of them; None if not requested.
     """
 
     found: Sweep
     picture: Picture | None
 
     def csv(self) -> str:
-        """A row a variant, with all numbers of all measures."""
+        """A row per variant, with all numbers of all measures."""
         return whole_table(self.found).csv()
 
     def frame(self) -> "DataFrame":
-        """A DataFrame of pandas, a row a variant, with all numbers of all measures."""
+        """A DataFrame of pandas, a row per variant, with all numbers of all measures."""
         return stacked({"": whole_table(self.found)})
 
 
 @dataclass
 class _Progress:
-    """A progress callback, which is called between the pieces of an evaluation too."""
+    """A progress callback that is also called between the pieces of an evaluation."""
 
     tell: Activity
     text: str = ""
@@ -180,31 +180,33 @@ class _Progress:
         self.tell(text)
 
     def between(self, done: int, builds: int) -> None:
-        """Tell how many builds there are of those being evaluated."""
+        """Tell how many of the builds being evaluated are done."""
         self.tell(f"{self.text}, {done} of {builds} builds")
 
 
 @contextmanager
-def _of(
-    asked: Asked | Subject, tell: Activity, *, trust_parts: bool, run_builders: bool
+def _analysed(
+    subject: Asked | Subject, tell: Activity, *, trust_parts: bool, run_builders: bool
 ) -> Iterator[tuple[Subject, Response, Activity]]:
-    """The subject of an analysis, its response and progress; batches are kept only until it ends.
+    """The subject of an analysis, its response and progress callback; batches are kept only until it ends.
 
-    What `tell` raises stops the analysis within a piece of an evaluation; asked again, it goes on with kept batches.
+    An exception raised by `tell` stops the analysis; with the same Subject again it goes on from the batches it kept.
     """
-    how = {"trust_parts": trust_parts, "run_builders": run_builders}
-    own, progress = asked if isinstance(asked, Subject) else subject_of(asked, **how), _Progress(tell)
-    with faults_of(own.simulation.mechanism):
-        yield own, replace(own.response, between=progress.between), progress
-    own.batches.clear()
+    if not isinstance(subject, Subject):
+        subject = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
+    progress = _Progress(tell)
+    with faults_of(subject.simulation.mechanism):
+        yield subject, replace(subject.response, between=progress.between), progress
+    subject.batches.clear()
 
 
 def _kept(
-    subject: Subject, name: str, found: Found, numbers: Callable[[Page], Mapping[str, Table]]
+    subject: Subject, name: str, result: Found, numbers: Callable[[Page], Mapping[str, Table]]
 ) -> tuple[Page, Found, Callable[[], Mapping[str, Table]], Callable[[], Charts], Path | None]:
-    """Parts of all answers: page, findings, what makes the tables of the frame and the charts, the run's file."""
-    page = page_of(name, found, subject.name, lambda: subject.simulation.system.contributors)
-    return page, found, lambda: numbers(page), partial(charts_of, name, found, subject.name), subject.keep(name, found)
+    """Arguments of every answer: page, numbers, functions that make tables and charts, and the run's file."""
+    page = page_of(name, result, subject.name, lambda: subject.simulation.system.contributors)
+    charts = partial(charts_of, name, result, subject.name)
+    return page, result, lambda: numbers(page), charts, subject.keep(name, result)
 
 
 def _first_table(page: Page) -> Mapping[str, Table]:
@@ -212,6 +214,7 @@ def _first_table(page: Page) -> Mapping[str, Table]:
 
 
 def _one_of(option: str, word: str, known: Sequence[str]) -> str:
+    """The word; refused if it is not a known one."""
     if word not in known:
         raise InputError(f"{option}: expected {', '.join(known[:-1])} or {known[-1]}, got {word!r}")
     return word
@@ -241,34 +244,34 @@ def what_if(
     Args:
         subject: a scene or a run, its path, or the name of a bundled scene.
         set: other tolerances by name, such as {"centre distance": "±10 um"}.
-        factor: on the widths of others, by name.
-        measure: which; default: all that depend on what changes.
+        factor: factors on the widths of other tolerances, by name.
+        measure: its name; default: all that depend on the changed tolerances.
         trials: of the simulation; default: the study's.
         draws: of importance sampling, for each limit.
-        quick: rates and first order alone, without a simulation.
+        quick: True for rates and first order alone, without a simulation.
         seed: of importance sampling.
-        activity: progress callback, called every 0.1 s of evaluations or so; what it raises stops the analysis.
+        activity: progress callback, called about every 0.1 s of evaluations; an exception in it stops the analysis.
         warn: callback for warnings, before anything is simulated.
         trust_parts, run_builders: see run_scene.
 
     Raises:
         InputError: no such tolerance, measure or value, or none on which a measure depends.
     """
-    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
+    with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
         changes = [change_of(response, text) for text in _texts(set)]
         changes += [factor_of(response, text) for text in _texts(factor)]
         warnings = tuple(slips(response, changed(response, changes)))
         for words in warnings:
             warn(words)
         trials, draws = (0, 0) if quick else (trials, draws)
-        found = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=tell)
-    numbers = {name: what_if_table(each) for name, each in found.measures.items()}
+        result = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=tell)
+    numbers = {name: what_if_table(each) for name, each in result.measures.items()}
 
     def write() -> Scene:
-        return scene_with(response, own.scene, changes)
+        return scene_with(response, analysed.scene, changes)
 
-    kept = _kept(own, "what-if", found, lambda page: numbers)
-    return OtherTolerances(*kept, warnings, before=lambda: own.scene, write=write)
+    kept = _kept(analysed, "what-if", result, lambda page: numbers)
+    return OtherTolerances(*kept, warnings, before=lambda: analysed.scene, write=write)
 
 
 def effects(
@@ -287,21 +290,21 @@ def effects(
 
     Args:
         subject: a scene or a run, its path, or the name of a bundled scene.
-        measure: on which; default: all that are one number a trial.
+        measure: its name; default: all that are one number per trial.
         base: pairs of builds, a power of two; default: as time allows.
         seed: of their points.
         position: indices at a position, averaged; or the position as an input as well.
-        shapley: Shapley effects too, also where nothing is correlated.
+        shapley: True for Shapley effects, too, also if nothing is correlated.
         activity, trust_parts, run_builders: see what_if.
 
     Raises:
         InputError: no such measure or position, or a base that is no power of two.
     """
-    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
+    with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
         response = response if measure is None else response.of(measure)
         as_input = _one_of("position", position, ("averaged", "as-input")) == "as-input"
-        found = found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=tell)
-    return Answer(*_kept(own, "effects", found, lambda page: {"": effects_table(found)}), whole=True)
+        result = found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=tell)
+    return Answer(*_kept(analysed, "effects", result, lambda page: {"": effects_table(result)}), whole=True)
 
 
 def rare(
@@ -315,24 +318,24 @@ def rare(
     trust_parts: bool = False,
     run_builders: bool = False,
 ) -> RareAnswer:
-    """Fraction of builds beyond each limit where that is too rare for trials, as `tol3d rare` finds it.
+    """Fraction of builds beyond each limit, also if too rare for plain trials, as `tol3d rare` finds it.
 
     Args:
         subject: a scene or a run, its path, or the name of a bundled scene.
-        measure: whose limits; default: those of all.
+        measure: whose limits are analysed; default: those of all measures.
         method: importance, subset, form or sorm; default: by the contributors.
-        draws: of importance sampling (4800), or a level of subset simulation (14000).
-        seed: of them.
+        draws: of importance sampling (default 4800), or per level of subset simulation (default 14000).
+        seed: of the draws.
         activity, trust_parts, run_builders: see what_if.
 
     Raises:
         InputError: no such measure or method, or no limit.
     """
-    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
+    with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
         _one_of("method", method, ("auto", "importance", "subset", "form", "sorm"))
         events = limits_left(response, measure, method=method, draws=draws, seed=seed, activity=tell)
-        found = rare_section(own.name, seed, response, events)
-    return RareAnswer(*_kept(own, "rare", found, _first_table), events=tuple(events))
+        result = rare_section(analysed.name, seed, response, events)
+    return RareAnswer(*_kept(analysed, "rare", result, _first_table), events=tuple(events))
 
 
 def changes(
@@ -346,32 +349,32 @@ def changes(
     trust_parts: bool = False,
     run_builders: bool = False,
 ) -> Answer[Changes]:
-    """Changes to a scene that leaves its limits, as `tol3d changes` finds them.
+    """Changes to a scene whose measures leave their limits, as `tol3d changes` finds them.
 
     Args:
         subject: a scene or a run, its path, or the name of a bundled scene.
-        measure: which; default: all that are NOT OK.
-        accept: builds out of limits that are accepted [ppm]; default: as the study asks.
-        accept_ppk: Ppk that is wanted, instead.
-        builds: by which each change is judged; default: 5000, or less if slow.
+        measure: its name; default: all that are NOT OK.
+        accept: accepted builds out of limits [ppm]; default: as the study states.
+        accept_ppk: required Ppk, instead.
+        builds: number by which each change is judged; default: 5000, or fewer if slow.
         activity, trust_parts, run_builders: see what_if.
 
     Raises:
-        InputError: no such measure, or none with limits.
+        InputError: no such measure, none with limits, or both `accept` and `accept_ppk`.
     """
     if accept is not None and accept_ppk is not None:
         raise InputError("expected accept or accept_ppk, got both")
-    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
-        ppk = own.simulation.study.accept_ppk if accept is None and accept_ppk is None else accept_ppk
+    with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
+        ppk = analysed.simulation.study.accept_ppk if accept is None and accept_ppk is None else accept_ppk
         accepted: Accepted = (ACCEPTED_PPM if accept is None else accept) if ppk is None else AcceptedPpk(ppk)
         ppm, aim = (accepted.beyond_one_ppm, accepted.ppk) if isinstance(accepted, AcceptedPpk) else (accepted, AIM)
-        bad = None if own.run is None else not_ok(own.run, accepted)
-        found = changes_of(response, ChangesQuestion(measure, ppm, builds, aim), bad=bad, activity=tell)
+        bad = None if analysed.run is None else not_ok(analysed.run, accepted)
+        result = changes_of(response, ChangesQuestion(measure, ppm, builds, aim), bad=bad, activity=tell)
 
     def numbers(page: Page) -> Mapping[str, Table]:
         return {"": contributions_table(contributions_of(response, measure))}
 
-    return Answer(*_kept(own, "changes", found, numbers), whole=True)
+    return Answer(*_kept(analysed, "changes", result, numbers), whole=True)
 
 
 def methods(
@@ -383,22 +386,22 @@ def methods(
     trust_parts: bool = False,
     run_builders: bool = False,
 ) -> Answer[Methods]:
-    """Worst case, RSS, modified RSS and simulation side by side, as `tol3d methods` sets them.
+    """Worst case, RSS, modified RSS and simulation side by side, as by `tol3d methods`.
 
     Args:
         subject: a scene or a run, its path, or the name of a bundled scene.
-        measure: which; default: all.
-        trials: of the simulation; default: the study's, 20 000 at most, or a run's own.
+        measure: its name; default: all.
+        trials: of the simulation; default: the study's, 20 000 at most, or those of the run.
         activity, trust_parts, run_builders: see what_if.
 
     Raises:
         InputError: no such measure.
     """
-    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
+    with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
         response = response if measure is None else response.of(measure)
-        found = found_side_by_side(response, trials_of(own, response, trials), tell)
-    numbers = {name: intervals_table(each) for name, each in found.measures.items()}
-    return Answer(*_kept(own, "methods", found, lambda page: numbers))
+        result = found_side_by_side(response, trials_of(analysed, response, trials), tell)
+    numbers = {name: intervals_table(each) for name, each in result.measures.items()}
+    return Answer(*_kept(analysed, "methods", result, lambda page: numbers))
 
 
 def allocate(
@@ -423,23 +426,23 @@ def allocate(
 
     Args:
         subject: a scene or a run, its path, or the name of a bundled scene.
-        ppm: builds that may be out of the limits of a measure.
-        ppk: instead, for each limit; default: 1.33.
+        ppm: accepted builds out of the limits of each measure [ppm].
+        ppk: required Ppk at each limit, instead; default: 1.33.
         measure: NAME or NAME:low, NAME:high; default: all that have limits.
-        cost: file of costs by contributor, YAML; default: 1 by factor.
-        bounds: of factors.
-        bound: of the factors of single contributors, by name, such as {"runout": "0.8..1.2"}.
-        freeze: tolerances that stay as they are.
-        stays: limits that stay instead of the middle, by name, "low" or "high".
-        beyond_least: draw below what is physical, such as clearances below 0.
-        draws: of importance sampling, each time and for each limit.
-        seed: of them.
+        cost: YAML file of costs by contributor; default: 1 over the factor.
+        bounds: of all factors.
+        bound: bounds of single contributors' factors, by name, such as {"runout": "0.8..1.2"}.
+        freeze: names of tolerances that are not changed.
+        stays: limit that stays, "low" or "high", instead of the middle, by name.
+        beyond_least: True to draw below the physical minimum, such as clearances below 0.
+        draws: of each importance sampling, for each limit.
+        seed: of the draws.
         activity, trust_parts, run_builders: see what_if.
 
     Raises:
-        InputError: no such measure, tolerance or bound, or no tolerances within bounds that do.
+        InputError: no such measure or tolerance, wrong bounds, or targets out of reach within the bounds.
     """
-    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
+    with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
         groups = groups_of(response)
         question = Question(
             costs=Costs() if cost is None else costs_from(Path(cost), groups),
@@ -451,12 +454,14 @@ def allocate(
             beyond_least=beyond_least,
         )
         targets = targets_of(response, [measure] if isinstance(measure, str) else measure, ppm, ppk)
-        found = allocation(response, targets, question, draws=draws, seed=seed, activity=tell)
+        result = allocation(response, targets, question, draws=draws, seed=seed, activity=tell)
 
     def write() -> Scene:
-        return allocated_scene(own.scene, response, found, question.stays)
+        return allocated_scene(analysed.scene, response, result, question.stays)
 
-    return OtherTolerances(*_kept(own, "allocation", found, _first_table), before=lambda: own.scene, write=write)
+    return OtherTolerances(
+        *_kept(analysed, "allocation", result, _first_table), before=lambda: analysed.scene, write=write
+    )
 
 
 def sweep(
@@ -472,28 +477,28 @@ def sweep(
     trust_parts: bool = False,
     run_builders: bool = False,
 ) -> Variants:
-    """Variants of a scene, each simulated with the same draws, as `tol3d sweep` does it.
+    """Variants of a scene, each simulated with the same draws, as by `tol3d sweep`.
 
     Args:
         scene: a scene, its path, or the name of a bundled one.
         vary: values of fields, as a list or as text: "10um,20um", "17..25:2", "10um..30um".
         latin_hypercube: number of variants drawn from ranges; None for a grid.
-        hypercube_seed: of that drawing.
-        out: a folder that keeps the variants, so that a sweep goes on there; None keeps none.
-        picture: a file to draw them in.
+        hypercube_seed: of that draw.
+        out: folder that keeps the variants, from which a sweep goes on; None keeps none.
+        picture: file for a picture of them.
         overrides: values that replace those of the scene's study, for all variants.
-        workers: that run the trials of one.
+        workers: number of processes for the trials of a variant.
         trust_parts, run_builders: see run_scene.
 
     Raises:
-        InputError: no such field, or values that are none.
+        InputError: no such field, or values that it cannot have.
     """
-    question = SweepQuestion(tuple(variable(*own) for own in vary.items()), latin_hypercube, hypercube_seed)
+    question = SweepQuestion(tuple(variable(*field) for field in vary.items()), latin_hypercube, hypercube_seed)
     loaded = load(scene, trust_parts=trust_parts, run_builders=run_builders)
     with TemporaryDirectory(prefix="tol3d-") as temporary:
         folder = Path(temporary) if out is None else Path(out)
         how = Order(folder, overrides, workers, trust_parts=trust_parts, run_builders=run_builders)
-        found = swept(loaded, question, how)
+        result = swept(loaded, question, how)
     if picture is not None:
-        named("tol3d.analyses.sweep_picture:draw_sweep")(found, Path(picture))
-    return Variants(sweep_report(found), found, None if picture is None else Picture(Path(picture)))
+        named("tol3d.analyses.sweep_picture:draw_sweep")(result, Path(picture))
+    return Variants(sweep_report(result), result, None if picture is None else Picture(Path(picture)))

@@ -128,6 +128,8 @@ def beside(first: Positions, then: Positions) -> Positions:
 
 
 CONFIDENCE: Final = 0.95
+MOST_UNSEEN: Final = -math.log(0.025)  # (1 - CONFIDENCE) / 2
+"""Largest expected number of events of which none was drawn."""
 MOST_FACTOR: Final = 1e6
 """Factor of an interval of which next to nothing is known."""
 

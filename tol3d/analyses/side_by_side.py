@@ -1,13 +1,12 @@
 """Methods side by side: a measure's worst case, its root sum of squares (RSS), modified RSS, and simulation.
 
-The half tolerance of a contributor is half of its effect between its two ends, by its slopes at the mean build: the
-limits of its law; without them its 0.135 % and 99.865 % percentiles, like ± 3 sigma of a normal law. RSS is the root of
-the sum of their squares, the worst case by slopes their sum. Modified RSS is RSS × C_f, with C_f = 1 + 0.5 (WC − RSS) /
-(RSS (√n − 1)) of n contributors that act, WC the worst case by slopes: it grows from RSS by half of how far WC exceeds
-it, less where WC is the most that n equal contributors may add up to. Source: Drake, Dimensioning and Tolerancing
-Handbook, 1999, chapter 9.
+The half tolerance of a contributor is half of its effect between its two ends, by its slopes at the mean build. The
+ends are the limits of its law, or without limits its 0.135 % and 99.865 % percentiles, like ± 3 sigma of a normal law.
+RSS is the root of the sum of their squares, the worst case by slopes (WC) their sum. Modified RSS is RSS × C_f, with
+C_f = 1 + 0.5 (WC − RSS) / (RSS (√n − 1)) for n acting contributors: for n equal ones, whose WC is √n RSS, it is
+1.5. Source: Drake, Dimensioning and Tolerancing Handbook, 1999, chapter 9.
 
-The worst case is searched for, not known exactly: see study/effects/worst_case.py.
+The worst case itself is searched for, and is a bound from inside: see study/effects/worst_case.py.
 """
 
 import math
@@ -58,28 +57,30 @@ from tol3d.study.trials.draws import drawn_ones
 from tol3d.study.trials.simulation import Simulation
 
 MOST_TRIALS: Final = 20_000
-"""Trials by default of a scene whose study has more."""
+"""Default number of trials of a scene whose study has more."""
 CONTACTS: Final = 6_000_000
-"""Contacts for the worst case of one measure: some seconds."""
+"""Contacts evaluated for the worst case of one measure: some seconds."""
 AT_ONCE: Final = 65_536
-"""Trials."""
+"""Trials evaluated in one batch."""
 PLACES: Final = 4
-"""Drawn positions at which a worst case begins at the mean build and at random ends."""
+"""Drawn positions at which a search begins from the mean build."""
 WORST_TRIALS: Final = 3
-"""Worst trials of each side, which are starts too."""
+"""Worst trials of each side from which a search begins, too."""
 RANDOM: Final = 3
+"""Builds with every contributor at a random end from which a search begins."""
 JUDGED: Final = 256
-"""Trials of each side that are taken into the regions for it."""
+"""Trials of each side among which the worst are looked for, after they are moved into the regions."""
 FEWEST: Final = 6
-"""Rows of a search: the mean build and an end by slopes, each side."""
+"""Least rows of a search: the mean build and ends by slopes, of both sides."""
 TOO_MANY: Final = 20.0
-"""Factor over the affordable number of builds that is too many to begin."""
+"""Factor on the affordable number of builds above which no search begins."""
 NEGLIGIBLE: Final = 1e-9
-"""Fraction of all half tolerances: a contributor with less effect has none."""
+"""Fraction of all half tolerances below which a contributor counts as without effect."""
 CONSTANT: Final = 1e-12
 """Relative difference of values that count as equal."""
 FEWEST_FITTED: Final = 100
-LOW, HIGH = 0.00135, 0.99865
+"""Values to which a law is fitted, at least."""
+LOW, HIGH = 0.00135, 0.99865  # the fractions below -+ 3 sigma of a normal law
 
 
 class Trials(Protocol):
@@ -96,12 +97,13 @@ class Trials(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """Trials that are drawn for this, as the study draws them.
+    """Trials drawn for this analysis, as the study draws them.
 
     Args:
         names: of the measures.
-        values: (trials, measures).
-        deviations, positions: of them.
+        values: (trials, measures), in their units; NaN for failed builds.
+        deviations: of the trials (trials, components).
+        positions: of the trials, by stream.
     """
 
     names: tuple[str, ...]
@@ -111,14 +113,14 @@ class Drawn:
 
     @classmethod
     def of(cls, response: Response, count: int) -> "Drawn":
-        """So many of a response."""
+        """Trials of a response, `count` of them."""
         deviations, positions = response.drawn(count)
-        found = []
+        values = []
         for first in range(0, count, AT_ONCE):
             rows = slice(first, first + AT_ONCE)
-            one = response.values(deviations[rows], {name: own[rows] for name, own in positions.items()})
-            found.append(np.where(one.seated, one.values, np.nan))
-        return cls(response.names, np.concatenate(found), deviations, positions)
+            part = response.values(deviations[rows], {name: column[rows] for name, column in positions.items()})
+            values.append(np.where(part.seated, part.values, np.nan))
+        return cls(response.names, np.concatenate(values), deviations, positions)
 
     def column(self, measure: str) -> Array:
         """See Trials."""
@@ -126,16 +128,16 @@ class Drawn:
 
     def builds(self, numbers: NDArray[np.int64]) -> tuple[Array, Standing]:
         """See Trials."""
-        return self.deviations[numbers], {name: own[numbers] for name, own in self.positions.items()}
+        return self.deviations[numbers], {name: column[numbers] for name, column in self.positions.items()}
 
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """Trials that a run has kept; their builds are drawn again.
+    """Trials kept by a run; their builds are drawn again when needed.
 
     Args:
-        simulation: the run's.
-        columns: by measure (trials,), NaN for failed builds.
+        simulation: of the run.
+        columns: values by measure (trials,), NaN for failed builds.
     """
 
     simulation: Simulation
@@ -147,56 +149,57 @@ class Kept:
 
     def builds(self, numbers: NDArray[np.int64]) -> tuple[Array, Standing]:
         """See Trials."""
-        found = drawn_ones(self.simulation, numbers.tolist())
-        return found.deviations, found.positions
+        trials = drawn_ones(self.simulation, numbers.tolist())
+        return trials.deviations, trials.positions
 
 
 def trials_of(subject: Subject, response: Response, count: int | None = None) -> Trials:
-    """The trials of a run, where it has kept those of all measures and no other number is asked for; else drawn ones.
+    """The trials of a run, if it has kept those of all measures and no number is given; else drawn ones.
 
     Args:
-        subject: the scene, or the run of it.
+        subject: a scene or a run.
         response: of its measures.
-        count: of trials; default: the study's, MOST_TRIALS at most.
+        count: number of trials; default: the study's, MOST_TRIALS at most.
     """
     run = subject.run
     if run is not None and count is None and run.keeps_trials:
         method = ANALYTIC if response.method is None else GEOMETRIC
         names = {name: (value_column(method, name), f"status:{name}") for name in response.names}
         if all(value in run.column_names for value, _ in names.values()):
-            return Kept(response.simulation, {name: _kept(run, *own) for name, own in names.items()})
+            return Kept(response.simulation, {name: _kept(run, *columns) for name, columns in names.items()})
     return Drawn.of(response, count or min(response.simulation.study.trials, MOST_TRIALS))
 
 
 def _kept(run: Run, value: str, status: str) -> Array:
+    """Values of a run's column (trials,), NaN where its column of statuses has another than seated."""
     names = [value, *([status] if status in run.column_names else [])]
-    found = run.columns(*names)
-    values = np.asarray(found[value], dtype=np.float64)
-    return np.where(np.asarray(found[status]).astype(str) == SEATED, values, np.nan) if status in found else values
+    columns = run.columns(*names)
+    values = np.asarray(columns[value], dtype=np.float64)
+    return np.where(np.asarray(columns[status]).astype(str) == SEATED, values, np.nan) if status in columns else values
 
 
 def methods(
     response: Response, trials: Trials | None = None, activity: Callable[[str], None] = lambda text: None
 ) -> Methods:
-    """All methods for each measure of a response.
+    """Worst case, RSS, modified RSS and simulation of each measure of a response.
 
     Args:
         response: of the scene.
-        trials: of the simulation; default: as many as the study has, MOST_TRIALS at most.
+        trials: of the simulation; default: the study's number, MOST_TRIALS at most.
         activity: progress callback.
     """
     before = response.evaluations
     activity("trials")
-    own_trials = trials or Drawn.of(response, min(response.simulation.study.trials, MOST_TRIALS))
-    found = {}
+    trials = trials or Drawn.of(response, min(response.simulation.study.trials, MOST_TRIALS))
+    by_measure = {}
     for measure in response.measures:
         activity(measure.name)
-        found[measure.name] = _of_measure(response.of(measure.name), measure, own_trials)
+        by_measure[measure.name] = _of_measure(response.of(measure.name), measure, trials)
     return made(
         Methods,
         scene=response.simulation.system.name,
         method="analytic" if response.method is None else "geometric",
-        measures=found,
+        measures=by_measure,
         evaluations=response.evaluations - before,
     )
 
@@ -215,7 +218,7 @@ def _of_measure(response: Response, measure: Measure, trials: Trials) -> Measure
     column = trials.column(measure.name)
     worst = _worst(response, source, space, built, trials, column)
     total = float(np.sum(halves))
-    square = float(np.sum(halves**2)) + _together(response, space, slopes)
+    square = float(np.sum(halves**2)) + _correlated_squares(response, space, slopes)
     rss, count = math.sqrt(max(square, 0.0)), int(np.count_nonzero(halves > NEGLIGIBLE * total))
     factor = modified_factor(total, rss, count)
     sloping = total > 0.0 or not len(space.acting)
@@ -238,7 +241,12 @@ def _of_measure(response: Response, measure: Measure, trials: Trials) -> Measure
 
 
 def modified_factor(worst: float, rss: float, count: int) -> float | None:
-    """C_f of modified RSS: Drake's motor of 11 dimensions has 1.326; None where one contributor acts alone, or none.
+    """C_f of modified RSS; None if fewer than two contributors act. Drake's motor of 11 dimensions has 1.326.
+
+    Args:
+        worst: the sum of half tolerances.
+        rss: the root of the sum of their squares.
+        count: number of acting contributors.
 
     >>> round(modified_factor(0.0955, 0.0381, 11), 3)
     1.325
@@ -250,31 +258,32 @@ def modified_factor(worst: float, rss: float, count: int) -> float | None:
 
 def _built(response: Response) -> Built:
     def built(deviations: Array, positions: Standing) -> tuple[Array, Codes]:
-        found = response.values(deviations, positions)
-        return found.values[:, 0], found.codes[:, 0]
+        evaluated = response.values(deviations, positions)
+        return evaluated.values[:, 0], evaluated.codes[:, 0]
 
     return built
 
 
 def _half_tolerances(space: Space, slopes: Array) -> Array:
-    """Half tolerances of each active contributor, and of each of its features drawn separately (parts,)."""
-    found = [np.zeros(0)]
+    """Half tolerances of acting contributors, one for each feature that is drawn by itself (parts,)."""
+    halves = [np.zeros(0)]
     for drawing in space.drawings:
         if drawing.acts and slopes[drawing.columns].any():
-            found.append(region_of(drawing.draw, turning=drawing.turning).halves(slopes[drawing.columns]))
-    return np.concatenate(found)
+            halves.append(region_of(drawing.draw, turning=drawing.turning).halves(slopes[drawing.columns]))
+    return np.concatenate(halves)
 
 
-def _together(response: Response, space: Space, slopes: Array) -> float:
-    """The part of correlated contributors in the sum of squares, which may be below 0; each is one number."""
-    drawn, total = {drawing.name: drawing for drawing in space.drawings if drawing.acts}, 0.0
+def _correlated_squares(response: Response, space: Space, slopes: Array) -> float:
+    """Addition of correlations to the sum of squares, which may be below 0; correlated contributors are scalars."""
+    drawings, total = {drawing.name: drawing for drawing in space.drawings if drawing.acts}, 0.0
     for block in response.copula.blocks:
         signed = np.zeros(len(block.names))
         for k, name in enumerate(block.names):
-            if name in drawn:
-                its = slopes[drawn[name].columns]
-                halves = region_of(drawn[name].draw, turning=drawn[name].turning).halves(its)
-                signed[k] = float(np.sign(its[0])) * float(halves.sum())
+            if name in drawings:
+                drawing = drawings[name]
+                slope = slopes[drawing.columns]
+                halves = region_of(drawing.draw, turning=drawing.turning).halves(slope)
+                signed[k] = float(np.sign(slope[0])) * float(halves.sum())
         others = value_correlations(block, response.draws) - np.eye(len(signed))
         total += float(signed @ others @ signed)
     return total
@@ -283,7 +292,10 @@ def _together(response: Response, space: Space, slopes: Array) -> float:
 def _worst(
     response: Response, source: Measure, space: Space, built: Built, trials: Trials, values: Array
 ) -> WorstCase | None:
-    """The worst case from the mean build, ends by slopes, the worst trials, and other positions, as far as it pays."""
+    """Worst case searched from the mean build, ends by slopes, the worst trials and other positions, as time allows.
+
+    None if nothing acts, or a single search would take too long.
+    """
     method = ANALYTIC_METHOD if response.method is None else response.simulation.study.engine
     builds = CONTACTS / price(response.simulation, method, source)
     rows = builds / max(1, builds_a_row(space))
@@ -292,45 +304,48 @@ def _worst(
         return None
     trial_starts, within = [], []
     for sign in (-1.0, 1.0):
-        from_trials, best = _worst_trials(space, built, trials, values, sign)
+        from_trials, worst = _worst_trials(space, built, trials, values, sign)
         trial_starts += from_trials
-        within += best
+        within += worst
     starts = [first_starts(space, built, at_rest, 0), *trial_starts]
     if response.simulation.system.streams:
         drawn = response.positions(PLACES, "drawn")
         starts.append(Starts.both_ways(builds_in(space, np.repeat(space.mean[None], PLACES, axis=0)), drawn))
     starts.append(Starts.both_ways(random_ends(space, RANDOM, seed=1), repeated(at_rest, RANDOM)))
-    taken = list(accumulate(len(start.signs) for start in starts))
-    afforded = [own for own, count in zip(starts, taken, strict=True) if count <= max(rows, FEWEST)]
+    counts = list(accumulate(len(start.signs) for start in starts))
+    afforded = [start for start, count in zip(starts, counts, strict=True) if count <= max(rows, FEWEST)]
     return worst_case(space, built, joined(afforded), most=int(builds)).with_builds(within)
 
 
 def _worst_trials(
     space: Space, built: Built, trials: Trials, values: Array, sign: float
 ) -> tuple[list[Starts], list[WorstBuild]]:
-    """Starts at the worst trials of a side, taken into the regions, and the worst of those that lie within them.
+    """Starts at the worst trials of a side, moved into the regions, and the worst trial that lies within them.
 
-    Laws without limits of their own draw beyond their regions.
+    Trials may lie outside, because laws without limits draw beyond their regions.
     """
     ranked = np.argsort(-sign * values)  # failed builds are last
     ranked = ranked[np.isfinite(values[ranked])][:JUDGED]
     if not ranked.size:
         return [], []
-    deviations, places = trials.builds(ranked)
+    deviations, positions = trials.builds(ranked)
     rows = builds_in(space, deviations)
-    found, _ = built(rows.deviations, places)
-    best = np.argsort(np.where(np.isfinite(found), -sign * found, np.inf))[:WORST_TRIALS]
-    starts = Starts(rows.at(best), {name: own[best] for name, own in places.items()}, np.full(len(best), sign))
+    moved, _ = built(rows.deviations, positions)
+    worst = np.argsort(np.where(np.isfinite(moved), -sign * moved, np.inf))[:WORST_TRIALS]
+    at_worst = {name: column[worst] for name, column in positions.items()}
+    starts = Starts(rows.at(worst), at_worst, np.full(len(worst), sign))
     inside = np.flatnonzero(within_regions(space, deviations))
     first = [
-        WorstBuild(float(values[ranked[k]]), deviations[k], {name: own[k : k + 1] for name, own in places.items()})
+        WorstBuild(
+            float(values[ranked[k]]), deviations[k], {name: column[k : k + 1] for name, column in positions.items()}
+        )
         for k in inside[:1]
     ]
     return [starts], first
 
 
 def _worst_found(response: Response, space: Space, worst: WorstCase) -> WorstFound:
-    def told(build: WorstBuild | None) -> BuildFound | None:
+    def shown(build: WorstBuild | None) -> BuildFound | None:
         if build is None:
             return None
         return made(
@@ -338,50 +353,50 @@ def _worst_found(response: Response, space: Space, worst: WorstCase) -> WorstFou
             measured=_known(build.value),
             status=response.simulation.system.statuses.texts[build.code],
             deviations={
-                own.name: (build.deviations[space.drawings[k].columns] / own.per_unit + 0.0).tolist()
-                for k, own in enumerate(response.contributors)
+                contributor.name: (build.deviations[space.drawings[k].columns] / contributor.per_unit + 0.0).tolist()
+                for k, contributor in enumerate(response.contributors)
                 if space.drawings[k].acts
             },
-            positions={name: float(own[0]) for name, own in build.positions.items()},
+            positions={name: float(column[0]) for name, column in build.positions.items()},
         )
 
     return made(
         WorstFound,
-        low=told(worst.low),
-        high=told(worst.high),
-        unseated=told(worst.unseated),
+        low=shown(worst.low),
+        high=shown(worst.high),
+        unseated=shown(worst.unseated),
         met=worst.met,
         evaluations=worst.evaluations,
     )
 
 
 def _sample(column: Array, worst: WorstCase | None) -> MethodsSample:
-    """Estimates by trials (n,), of which those that failed are not numbers."""
-    own = column[np.isfinite(column)]
-    mean, sigma = (float(own.mean()), float(own.std(ddof=1))) if len(own) > 1 else (math.nan, math.nan)
-    centred = own - mean if len(own) > 1 else own
+    """Estimates by the values of trials (n,), NaN for failed ones, and the number beyond the worst case."""
+    values = column[np.isfinite(column)]
+    mean, sigma = (float(values.mean()), float(values.std(ddof=1))) if len(values) > 1 else (math.nan, math.nan)
+    centred = values - mean if len(values) > 1 else values
     varies = sigma > CONSTANT * (abs(mean) or 1.0)
-    enough = len(own) * LOW >= 1.0
+    enough = len(values) * LOW >= 1.0
     beyond = 0
     if worst is not None and worst.low is not None and worst.high is not None:
         slack = CONSTANT * max(abs(worst.low.value), abs(worst.high.value))
-        beyond = int(np.sum((own < worst.low.value - slack) | (own > worst.high.value + slack)))
+        beyond = int(np.sum((values < worst.low.value - slack) | (values > worst.high.value + slack)))
     return made(
         MethodsSample,
         trials=len(column),
-        failed=len(column) - len(own),
+        failed=len(column) - len(values),
         mean=_known(mean),
         sigma=_known(sigma),
         low_3sigma=_known(mean - 3 * sigma),
         high_3sigma=_known(mean + 3 * sigma),
-        p0_135=_known(float(np.quantile(own, LOW))) if enough else None,
-        p99_865=_known(float(np.quantile(own, HIGH))) if enough else None,
-        sample_min=_known(float(own.min())) if len(own) else None,
-        sample_max=_known(float(own.max())) if len(own) else None,
+        p0_135=_known(float(np.quantile(values, LOW))) if enough else None,
+        p99_865=_known(float(np.quantile(values, HIGH))) if enough else None,
+        sample_min=_known(float(values.min())) if len(values) else None,
+        sample_max=_known(float(values.max())) if len(values) else None,
         skewness=_known(float((centred**3).mean() / sigma**3)) if varies else None,
         kurtosis=_known(float((centred**4).mean() / sigma**4 - 3.0)) if varies else None,
         beyond_worst=beyond,
-        law=fitted(own) if varies and len(own) >= FEWEST_FITTED else None,
+        law=fitted(values) if varies and len(values) >= FEWEST_FITTED else None,
     )
 
 

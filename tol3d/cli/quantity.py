@@ -1,4 +1,4 @@
-"""Numbers with units as rigs have them: angles in turns too, torques, stiffnesses."""
+"""Numbers with units as options for rigs have them: angles, in turns too, torques and lengths."""
 
 import math
 import re
@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Final, Literal
 
 from tol3d.errors import InputError
+from tol3d.units import LONGEST_TEXT, shown
 
 Kind = Literal["angle", "torque", "length"]
 
@@ -27,34 +28,38 @@ LENGTHS: Final[Mapping[str, float]] = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "nm":
 UNITS: Final[Mapping[Kind, Mapping[str, float]]] = {"angle": ANGLES, "torque": TORQUES, "length": LENGTHS}
 EXAMPLES: Final[Mapping[Kind, str]] = {"angle": "6 arcsec", "torque": "2 N m", "length": "18 um"}
 
-MOST_NUMBERS: Final = 20
+MOST_NUMBERS: Final = 20  # of one option
 PLAIN: Final = re.compile(r"\d{1,5}\.?\d{0,9}|\.\d{1,9}")
 STATED: Final = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s].*?)\s*")
 
 
-def stated(option: str, text: str, kind: Kind) -> float:
+def stated(option: str, text: str, kind: Kind, least: float = -math.inf) -> float:
     """Value of an option with its unit [rad, N m or mm].
 
     Raises:
-        InputError: it is something else.
+        InputError: no finite number with a unit of that kind, or less than the least.
 
     >>> round(stated("--e1", "18 um", "length"), 9)
     0.018
     """
-    match = STATED.fullmatch(text[:100])
-    if match is None or match[2] not in UNITS[kind]:
+    match = STATED.fullmatch(text) if len(text) <= LONGEST_TEXT else None
+    value = float(match[1]) * UNITS[kind].get(match[2], math.nan) if match else math.nan
+    if not math.isfinite(value):
         article, units = "an" if kind == "angle" else "a", ", ".join(UNITS[kind])
         raise InputError(
-            f'{option}: expected {article} {kind} with its unit ({units}), such as "{EXAMPLES[kind]}", got {text!r}'
+            f"{option}: expected {article} {kind} with its unit ({units}), such as "
+            f'"{EXAMPLES[kind]}", got {shown(text)}'
         )
-    return float(match[1]) * UNITS[kind][match[2]]
+    if value < least:
+        raise InputError(f"{option}: expected {least:g} or more, got {shown(text)}")
+    return value
 
 
 def numbers(option: str, text: str) -> tuple[float, ...]:
-    """Positive numbers between commas, as an option gives them, in rising order.
+    """Numbers from 0.1 to 10000 between commas, each once, in rising order.
 
     Raises:
-        InputError: it says something else.
+        InputError: another number, more than MOST_NUMBERS of them, or another text.
 
     >>> numbers("--turns", "4, 2,16")
     (2.0, 4.0, 16.0)

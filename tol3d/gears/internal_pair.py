@@ -1,7 +1,7 @@
 """An external spur gear in an internal one, on parallel axes; either may drive.
 
-World: the driver's axis is z. The teeth meet at azimuth 0 of both gears, and both turn in the same sense: a driven
-ring's axis lies at -x by the centre distance, a driven gear's inside a driving ring at +x.
+World: the driver's axis is z. The teeth meet at azimuth 0 of both gears, and both turn in the same sense. The axis of a
+driven ring lies at -x by the centre distance, that of a driven gear in a driving ring at +x.
 """
 
 import math
@@ -25,11 +25,11 @@ from tol3d.numerics.arrays import Array
 class InternalPair(CylindricalPair):
     """Pinion (driver) and wheel (driven), of which one is an InternalGear, at a centre distance [mm] above 0.
 
-    As the centre distance grows the teeth come closer: its backlash shrinks.
+    As the centre distance grows the teeth come closer: backlash shrinks.
 
     Raises:
-        GeometryError: not one gear is internal; modules or pressure angles differ; or the ring's base circle does not
-            contain the other at that distance.
+        GeometryError: not exactly one gear is internal; modules or pressure angles differ; the internal gear has not
+            more teeth; or at that distance the base circles have no common tangent.
 
     >>> alpha = math.radians(20)
     >>> planet, ring = SpurGear(27, 1.0, alpha, 10.0), InternalGear(79, 1.0, alpha, 10.0)
@@ -60,18 +60,18 @@ class InternalPair(CylindricalPair):
     @property
     def ring(self) -> InternalGear:
         """The internal gear."""
-        found = self.wheel if isinstance(self.wheel, InternalGear) else self.pinion
-        if not isinstance(found, InternalGear):
+        ring = self.wheel if isinstance(self.wheel, InternalGear) else self.pinion
+        if not isinstance(ring, InternalGear):
             raise TypeError("no gear of the pair is internal")
-        return found
+        return ring
 
     @property
     def inner(self) -> SpurGear:
         """The external gear inside it."""
-        found = self.wheel if isinstance(self.wheel, SpurGear) else self.pinion
-        if not isinstance(found, SpurGear):
+        inner = self.wheel if isinstance(self.wheel, SpurGear) else self.pinion
+        if not isinstance(inner, SpurGear):
             raise TypeError("no gear of the pair is external")
-        return found
+        return inner
 
     @property
     def ring_drives(self) -> bool:
@@ -80,23 +80,28 @@ class InternalPair(CylindricalPair):
 
     @property
     def iso_sign(self) -> int:
-        """-1."""
+        """-1: ISO 21771 counts the centre distance of an internal pair negative."""
         return -1
 
     # world --------------------------------------------------------------------------------------
 
     @property
     def wheel_origin(self) -> Array:
-        """The face centre of the wheel, (3,) [mm]: at +x by the centre distance in a driving ring, else at -x."""
+        """Face centre of the wheel (3,) [mm]: at +x by the centre distance in a driving ring, else at -x."""
         return np.array([self.centre_distance if self.ring_drives else -self.centre_distance, 0.0, 0.0])
 
     @property
     def mesh_azimuths(self) -> tuple[float, float]:
-        """Both see the mesh at +x [rad]."""
+        """Azimuth of the mesh from either gear [rad]: 0, along +x."""
         return 0.0, 0.0
 
     def tip_clearance(self, origins: Array, scale: tuple[float, float]) -> float:
-        """Smaller free distance [mm] between a tip circle and the mate's root circle, axes where they are."""
+        """Smaller clearance [mm] between a tip circle and the mate's root circle, with the axes at given places.
+
+        Args:
+            origins: of driver and driven (2, 3) [mm].
+            scale: growth of driver and driven.
+        """
         ring, inner = scale if self.ring_drives else scale[::-1]
         between = origins[1, :2] - origins[0, :2]
         distance = math.hypot(*between)
@@ -106,7 +111,7 @@ class InternalPair(CylindricalPair):
 
     @property
     def remedy(self) -> str:
-        """Change needed for zero backlash."""
+        """Sentence on the change needed for zero backlash."""
         nearest = self.zero_backlash_centre_distance
         if math.isnan(nearest):
             return "no centre distance leaves backlash: the teeth are too thick together. Thin the teeth"
@@ -117,24 +122,24 @@ class InternalPair(CylindricalPair):
 
     @property
     def interference(self) -> str:
-        """The condition of interference that fails, its numbers and the remedy; or nothing."""
+        """The condition of interference that is violated, its numbers and the remedy; "" if none is."""
         return interference(InternalMesh(self.ring, self.inner, self.centre_distance))
 
     @property
     def interferes(self) -> bool:
-        """True if some condition of interference fails: quicker than the words."""
+        """True if a condition of interference is violated; quicker than `interference`."""
         return interferes(InternalMesh(self.ring, self.inner, self.centre_distance))
 
     @property
     def radially_assembled(self) -> bool:
-        """True if the inner gear can be put in along the line of centres; else only along its axis."""
+        """True if the inner gear can be inserted along the line of centres; else only along its axis."""
         return radially_assembled(InternalMesh(self.ring, self.inner, self.centre_distance))
 
     def refuse_interference(self) -> None:
-        """Raise unless the gears run without interference, contact keeps off undercut, and the next pair takes over.
+        """Refuse interference, contact on undercut flanks, and a contact ratio below 1.
 
         Raises:
-            GeometryError: with the condition that fails, its numbers and the remedy.
+            GeometryError: with the violated condition, its numbers and the remedy.
         """
         if self.interference:
             raise GeometryError(self.interference)
@@ -145,10 +150,10 @@ class InternalPair(CylindricalPair):
 
     @property
     def touching_azimuths(self) -> tuple[float, float]:
-        """The path of contact, and the movement of its ends as axes stray by CONTACT_MARGIN p_b sin(alpha_w).
+        """Azimuths of the path of contact, widened for axes displaced by CONTACT_MARGIN p_b sin(alpha_w) [rad].
 
-        As an axis moves by d the path ends off by d/sin(alpha_w), as of external gears, and the line of centres and the
-        working pressure angle turn by d/(a sin(alpha_w)): much where the teeth differ by few.
+        If an axis is displaced by d, the path ends d/sin(alpha_w) off, as for external gears, and the line of centres
+        and the working pressure angle turn by d/(a sin(alpha_w)), which is large if the numbers of teeth are close.
         """
         lowest, highest = self.active_azimuths
         margin = CONTACT_MARGIN * (self.pinion.angular_pitch + self.pinion.base_pitch / self.centre_distance)
@@ -157,11 +162,11 @@ class InternalPair(CylindricalPair):
     # positions --------------------------------------------------------------------------------------
 
     def driven_angle(self, driver_angle: Array) -> Array:
-        """Wheel's turn [rad] with its space centred on the pinion's tooth: pi/z2 + (z1/z2) theta_1."""
+        """Wheel's turn [rad] with a space centred on the pinion's tooth: pi/z2 + (z1/z2) theta_1."""
         return math.pi / self.wheel.teeth + driver_angle / self.ratio
 
     def touching_angle(self, driver_angle: Array, flank: Flank, displaced: Displaced) -> Array:
-        """Wheel's turn [rad] at which the flanks of that side touch, were the axes parallel.
+        """Wheel's turn [rad] at which the flanks of a side touch, (trials,); tilts of the axes are neglected.
 
         From the line of action, r_b1 t_1 + r_b2 t_2 = (r_b1 + r_b2) tan alpha_w with the ring's radius negative and the
         rolls t = alpha_w + eta_b - sigma (azimuth off the mesh), of the ring alpha_w - eta_b + sigma (azimuth).
@@ -169,7 +174,7 @@ class InternalPair(CylindricalPair):
         Args:
             driver_angle: pinion's turn [rad], (trials,).
             flank: the pinion's flank.
-            displaced: where the gears' centres lie, and their flanks; turns of the axes are left out.
+            displaced: origins of the gears, and turns of their flanks.
         """
         away = displaced.origin[:, 1] - displaced.origin[:, 0]
         to_mesh = away if self.ring_drives else -away
@@ -184,9 +189,9 @@ class InternalPair(CylindricalPair):
         )
 
     def mating_flank(self, flank: Flank) -> Flank:
-        """Flank of the wheel that meets that side of the pinion: the other, by azimuth."""
+        """Flank of the wheel that meets a flank of the pinion: the opposite one, by azimuth."""
         return opposite(flank)
 
     def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
-        """The wheel's tooth that each of those pinion flanks meets: k - 1 on the right flank, k on the left."""
+        """Wheel's teeth that meet a flank of the pinion's teeth k: k - 1 on the right flank, k on the left."""
         return driver_teeth - (1 if flank == 1 else 0)

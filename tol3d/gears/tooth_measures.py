@@ -1,7 +1,7 @@
 """Tooth thickness as shops measure it: the span over teeth, and the size over or between two pins or balls.
 
-Closed forms of ISO 21771-1 for spur gears; of an internal gear the sizes are those of its spaces, which have the shape
-of the teeth of an external one. Each is exact for rigid involutes, and so is its inverse. Lengths in mm.
+Closed forms of ISO 21771-1 for spur gears. Sizes of an internal gear are those of its spaces, which have the shape of
+the teeth of an external one. All forms and their inverses are exact for rigid involutes. Lengths in mm.
 """
 
 import math
@@ -16,18 +16,18 @@ from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.involute import inverse_involute, involute
 from tol3d.numerics.arrays import Array
 
-PIN_STEP = 0.05  # mm; pins that are proposed have diameters of so many of it
-REACH_SLACK = 1e-9  # mm; a face may touch at the very end of a flank
+PIN_STEP = 0.05  # mm; diameters of proposed pins are multiples of it
+REACH_SLACK = 1e-9  # mm; contact at the very end of a flank is allowed
 
 
 @dataclass(frozen=True)
 class Span:
-    """The span W_k: between two parallel faces that touch flanks k teeth apart, inside k spaces.
+    """The span W_k: distance of two parallel faces over k teeth, of an internal gear over k spaces.
 
-    W_k = m cos alpha (pi (k - 1/2) + z inv alpha + 2 x tan alpha) (ISO 21771-1), inside with -2 x tan alpha.
+    W_k = m cos alpha (pi (k - 1/2) + z inv alpha + 2 x tan alpha) (ISO 21771-1); internal: - 2 x tan alpha.
 
     Args:
-        teeth: k, of an internal gear the number of spaces.
+        teeth: k; the number of spaces of an internal gear.
     """
 
     teeth: int
@@ -42,23 +42,23 @@ class Span:
         return gear.base_radius * (2 * math.pi * (self.teeth - 1) / gear.teeth + 2 * _convex_half_angle(gear))
 
     def thickness(self, gear: CylindricalGear, size: float) -> float:
-        """The arc at the reference circle [mm] of a gear with that span."""
+        """Tooth thickness [mm], the arc at the reference circle, of a gear with a span `size` [mm]."""
         half = size / (2 * gear.base_radius) - math.pi * (self.teeth - 1) / gear.teeth
         return _thickness(gear, half)
 
     def touches_at(self, gear: CylindricalGear) -> float:
-        """Radius [mm] at which both faces touch where they stand alike: r_y^2 = r_b^2 + (W_k/2)^2."""
+        """Radius [mm] of contact of both faces in the symmetric position: r_y^2 = r_b^2 + (W_k/2)^2."""
         return math.hypot(gear.base_radius, self.size(gear) / 2)
 
     def require_reach(self, gear: CylindricalGear) -> None:
         """Refuse a span whose faces touch no involute.
 
         Raises:
-            GeometryError: with the numbers of teeth that do.
+            GeometryError: with the possible numbers of teeth.
         """
         if 1 <= self.teeth <= gear.teeth and _on_flank(gear, self.touches_at(gear)):
             return
-        possible = [own.teeth for own in spans_of(gear)]
+        possible = [span.teeth for span in spans_of(gear)]
         over = f"expected {_range_words(possible)}" if possible else "no number of teeth does on this gear; use pins"
         raise GeometryError(
             f"the faces of a {self.words} touch at a diameter of {2 * self.touches_at(gear):.4f} mm, "
@@ -68,10 +68,11 @@ class Span:
 
 @dataclass(frozen=True)
 class OverPins:
-    """The size M over two pins or balls in opposite spaces; between them, of an internal gear.
+    """The size M over two pins or balls in opposite spaces; between them for an internal gear.
 
-    M = 2 r_K + D_M, of an odd number of teeth 2 r_K cos(pi/(2 z)) + D_M, inv alpha_K = D_M/(2 r_b) + eta_b - pi/z,
-    r_K = r_b/cos alpha_K, eta_b half a tooth at the base circle; inside D_M counts negative (ISO 21771-1).
+    M = 2 r_K + D_M, for an odd number of teeth 2 r_K cos(pi/(2 z)) + D_M, inv alpha_K = D_M/(2 r_b) + eta_b - pi/z,
+    r_K = r_b/cos alpha_K, eta_b half the angle of a tooth at the base circle. For an internal gear D_M is negative,
+    and inv alpha_K = D_M/(2 r_b) + eta_b with half the angle of a space (ISO 21771-1).
 
     Args:
         diameter: D_M of the pins or balls [mm]; spur teeth give the same with either.
@@ -94,7 +95,7 @@ class OverPins:
         return 2 * centre * _opposite(gear) + gear.iso_sign * self.diameter
 
     def thickness(self, gear: CylindricalGear, size: float) -> float:
-        """The arc at the reference circle [mm] of a gear with that size.
+        """Tooth thickness [mm], the arc at the reference circle, of a gear with a size `size` [mm].
 
         Raises:
             GeometryError: a size at which the pins' centres lie within the base circle.
@@ -107,7 +108,7 @@ class OverPins:
         return _thickness(gear, math.pi / gear.teeth + half if gear.iso_sign > 0 else half)
 
     def touches_at(self, gear: CylindricalGear) -> float:
-        """Radius [mm] at which a pin touches both flanks of its space; below the base circle it touches no involute."""
+        """Radius [mm] at which a pin touches both flanks of its space; if below the base circle, it touches none."""
         roll = math.tan(self._angle(gear)) - gear.iso_sign * self._turn(gear)
         return gear.base_radius * (math.hypot(1.0, roll) if roll > 0.0 else 1.0 + roll)
 
@@ -135,6 +136,7 @@ class OverPins:
         raise GeometryError(f"pins of {self.diameter:g} mm {why}: choose another diameter{advice}")
 
     def _turn(self, gear: CylindricalGear) -> float:
+        """D_M/(2 r_b) [rad]."""
         return self.diameter / (2 * gear.base_radius)
 
     def _angle(self, gear: CylindricalGear) -> float:
@@ -155,10 +157,10 @@ ToothMeasure = Span | OverPins
 
 @dataclass(frozen=True)
 class PinScale:
-    """The deviation of the arc at the reference circle by that of the size over pins: exact, both ways.
+    """Deviation of the tooth thickness, the arc at the reference circle, from that of the size over pins, and back.
 
     Args:
-        gear: nominal.
+        gear: the nominal gear.
         pins: over which it is measured.
     """
 
@@ -167,24 +169,24 @@ class PinScale:
 
     @property
     def words(self) -> str:
-        """Name of the measured quantity."""
+        """Name of the measured size."""
         return self.pins.words
 
     @cached_property
     def _nominal(self) -> float:
-        """inv alpha_K."""
+        """inv alpha_K of the nominal gear [rad]."""
         return involute(self.pins._angle(self.gear))
 
     @property
     def _lever(self) -> float:
-        """Lever of the size by r_K/r_b [mm]."""
+        """Change of the size per change of r_K/r_b [mm]."""
         return 2 * _opposite(self.gear) * self.gear.base_radius
 
     def deviation(self, measured: Array) -> Array:
-        """Arcs (n,) of sizes (n,), both less the nominal one [mm]; no pin lies within the base circle.
+        """Deviations of the thickness (n,) from those of the size (n,) [mm]; pin centres stop at the base circle.
 
-        inv alpha_K = sqrt(q^2 - 1) - arctan sqrt(q^2 - 1) with q = r_K/r_b, and the arc changes by 2 r as much, inside
-        by -2 r.
+        inv alpha_K = sqrt(q^2 - 1) - arctan sqrt(q^2 - 1) with q = r_K/r_b; the arc changes by 2 r times its change, of
+        an internal gear by -2 r times.
         """
         far = 1.0 / math.cos(self.pins._angle(self.gear)) + measured / self._lever
         roll = np.sqrt(np.maximum(far * far - 1.0, 0.0))
@@ -192,29 +194,30 @@ class PinScale:
         return np.asarray(arc * (roll - np.arctan(roll) - self._nominal))
 
     def measured(self, deviation: Array) -> Array:
-        """Sizes (n,) of arcs (n,), both less the nominal one [mm]."""
+        """Deviations of the size (n,) from those of the thickness (n,) [mm]."""
         arc = self.gear.iso_sign * 2 * self.gear.reference_radius
-        angles = [inverse_involute(max(self._nominal + own / arc, 0.0)) for own in deviation.tolist()]
+        angles = [inverse_involute(max(self._nominal + change / arc, 0.0)) for change in deviation.tolist()]
         return np.asarray(self._lever * (1.0 / np.cos(angles) - 1.0 / math.cos(self.pins._angle(self.gear))))
 
 
 def spans_of(gear: CylindricalGear) -> list[Span]:
     """Every span whose faces touch the involute."""
-    found = (Span(teeth) for teeth in range(1, gear.teeth // 2 + 1))
-    return [own for own in found if own.size(gear) > 0.0 and _on_flank(gear, own.touches_at(gear))]
+    spans = (Span(teeth) for teeth in range(1, gear.teeth // 2 + 1))
+    return [span for span in spans if span.size(gear) > 0.0 and _on_flank(gear, span.touches_at(gear))]
 
 
 def span_of(gear: CylindricalGear) -> Span | None:
-    """The span whose faces touch nearest to the circle of radius r + x m; None where none touches the involute."""
-    return min(spans_of(gear), key=lambda own: abs(own.touches_at(gear) - _middle(gear)), default=None)
+    """The span whose faces touch nearest to the circle of radius r + x m; None if none touches the involute."""
+    return min(spans_of(gear), key=lambda span: abs(span.touches_at(gear) - _middle(gear)), default=None)
 
 
 def pins_of(gear: CylindricalGear) -> OverPins | None:
-    """Pins that touch near the circle of radius r + x m, in steps of PIN_STEP; None where none does."""
+    """Pins, in steps of PIN_STEP, that touch near the circle of radius r + x m; None if none do."""
     return next(_possible_pins(gear), None)
 
 
 def _possible_pins(gear: CylindricalGear) -> Iterator[OverPins]:
+    """Pins by distance from the diameter that touches at the middle of the flank."""
     roll = gear.roll_at(_middle(gear))
     half, sign = _convex_half_angle(gear), gear.iso_sign
     angle = roll + math.pi / gear.teeth - half if sign > 0 else roll - half
@@ -224,8 +227,8 @@ def _possible_pins(gear: CylindricalGear) -> Iterator[OverPins]:
     nearest = round(wanted / PIN_STEP)
     for step in range(round(gear.module / PIN_STEP) + 1):
         for count in (nearest + step, nearest - step):
-            if count > 0 and _is_possible(gear, own := OverPins(round(count * PIN_STEP, 6))):
-                yield own
+            if count > 0 and _is_possible(gear, pins := OverPins(round(count * PIN_STEP, 6))):
+                yield pins
 
 
 def _is_possible(gear: CylindricalGear, pins: OverPins) -> bool:
@@ -242,13 +245,13 @@ def _is_possible(gear: CylindricalGear, pins: OverPins) -> bool:
 
 
 def _middle(gear: CylindricalGear) -> float:
-    """r + x m [mm], held within the involute."""
+    """r + x m [mm], r - x m of an internal gear, kept within the involute."""
     low, high = sorted((gear.form_radius, gear.tip_radius))
     return min(max(gear.reference_radius + gear.iso_sign * gear.profile_shift * gear.module, low), high)
 
 
 def _convex_half_angle(gear: CylindricalGear) -> float:
-    """Half angle of the convex body at the base circle [rad]: a tooth outside, a space inside."""
+    """Half angle at the base circle [rad] of a tooth of an external gear, of a space of an internal one."""
     return gear.base_half_angle if gear.iso_sign > 0 else math.pi / gear.teeth - gear.base_half_angle
 
 
@@ -259,7 +262,7 @@ def _thickness(gear: CylindricalGear, convex_half_angle: float) -> float:
 
 
 def _opposite(gear: CylindricalGear) -> float:
-    """Distance of two opposite spaces over that of diametral ones: cos(pi/(2 z)) of an odd number of teeth."""
+    """Distance of two opposite spaces over their diameter: 1, or cos(pi/(2 z)) for an odd number of teeth."""
     return math.cos(math.pi / (2 * gear.teeth)) if gear.teeth % 2 else 1.0
 
 

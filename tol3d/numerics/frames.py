@@ -1,12 +1,11 @@
 """Poses of many trials at once: rotations (..., 3, 3) and 4x4 transforms, by elementwise arithmetic only.
 
-No BLAS: a product of one row must have the same bits as the same row among thousands.
+Without BLAS, so that a row has the same bits alone and among thousands.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 SMALL_TURN = 1e-8  # rad; below it sin(x)/x and (1 - cos x)/x^2 are 1 and 1/2 to the last bit
 
@@ -30,12 +29,12 @@ def apply(matrix: Array, vector: Array) -> Array:
 
 
 def transposed(matrix: Array) -> Array:
-    """The inverse of a rotation."""
+    """The inverse of rotations (..., 3, 3)."""
     return np.swapaxes(matrix, -1, -2)
 
 
 def about_z(angle: Array) -> Array:
-    """Rotations about z [rad], (...) to (..., 3, 3)."""
+    """Rotations about z by angles [rad], (...) to (..., 3, 3)."""
     cos, sin = np.cos(angle), np.sin(angle)
     zero, one = np.zeros_like(cos), np.ones_like(cos)
     return np.stack(
@@ -61,7 +60,7 @@ def about_vector(vector: Array) -> Array:
 
 
 def transform(rotation: Array, translation: Array) -> Array:
-    """4x4 transforms from rotations (..., 3, 3) and translations (..., 3)."""
+    """Transforms (..., 4, 4) of rotations (..., 3, 3) and translations (..., 3)."""
     pose = np.zeros((*rotation.shape[:-2], 4, 4))
     pose[..., :3, :3] = rotation
     pose[..., :3, 3] = translation

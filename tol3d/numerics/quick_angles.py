@@ -7,8 +7,9 @@ import numpy as np
 
 from tol3d.numerics.compiled import nested, part
 
-PER_QUARTER = 2.0 / math.pi
+PER_QUARTER = 2.0 / math.pi  # quarters of a turn per radian
 QUARTER_HIGH, QUARTER_LOW = math.pi / 2.0, 6.123233995736766e-17  # together a quarter of a turn to 1e-33
+# coefficients of x^(2k+1) and of x^2k; the first terms left out are 5e-17 and 2e-18 at an eighth of a turn
 SINES = tuple((-1.0) ** k / math.factorial(2 * k + 1) for k in range(8))
 COSINES = tuple((-1.0) ** k / math.factorial(2 * k) for k in range(9))
 LITTLE: Final = 2.0**-5  # rad; the first term that a series leaves out is 2e-17 there
@@ -17,7 +18,11 @@ SLIGHT: Final = 2.0**-7  # tangent, of which the series of the arc tangent leave
 
 @part
 def cos_and_sin(angle: float) -> tuple[float, float]:
-    """cos(angle) and sin(angle) to 4e-16, of less than a thousand turns: series about the nearest quarter of a turn."""
+    """cos and sin of an angle [rad], by series about the nearest quarter of a turn.
+
+    The error is below 4e-16 up to a thousand turns where products are fused with sums, as kernels have them; otherwise
+    rounding of the quarters adds 1e-16 per radian.
+    """
     quarters = math.floor(angle * PER_QUARTER + 0.5)
     x = (angle - quarters * QUARTER_HIGH) - quarters * QUARTER_LOW
     y = x * x

@@ -1,4 +1,4 @@
-"""Tables by the columns that fields declare: a new field with a column is in all of them."""
+"""Tables by the columns that fields of objects declare: a new field with a column is in all of them."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -20,34 +20,34 @@ from tol3d.report.page import Heading, Row, Shown, Table
 from tol3d.study.runs.summary.shows import Shows, columns_of, shown_by
 
 LEFT: Final = frozenset(("words", "unit sign"))
-"""Forms of cells that stand left and wrap."""
+"""Forms of cells that are aligned left and wrapped."""
 PER: Final = {"": 1.0, "mm": 1.0, "µm": 1e3, "°": 180 / math.pi, "deg": 180 / math.pi, "%": 100.0, "10⁻⁶/K": 1e6}
-"""Numbers of a unit that are 1 mm, 1 rad or the whole."""
+"""Shown number per internal one [mm, rad, 1, 1/K], by the unit shown."""
 
 
 def declared_table(corner: str, rows: Iterable[tuple[str | Row, Any]], unit: str = "") -> Table:
-    """A row an object, a column a field that declares one; of no object an empty table.
+    """Table with a row per object and a column per field that declares one; empty without objects.
 
     Args:
         corner: head of the labels.
-        rows: objects with their labels, or with rows that have no cells yet. A field of objects of several kinds is
-            left out of those that lack it.
-        unit: of the measure that they are of; default: each object's own.
+        rows: objects with their labels, or with rows that have no cells yet. Objects of several kinds have a dash in
+            columns of fields that they lack.
+        unit: of the measure whose numbers they are; default: each object's own.
     """
-    told = [(own if isinstance(own, Row) else Row(own, ()), of) for own, of in rows]
-    columns = [*_columns([of for _, of in told])]
-    filled = [replace(row, cells=tuple(column.cell(of, unit) for column in columns)) for row, of in told]
+    labelled = [(label if isinstance(label, Row) else Row(label, ()), item) for label, item in rows]
+    columns = [*_columns([item for _, item in labelled])]
+    filled = [replace(row, cells=tuple(column.cell(item, unit) for column in columns)) for row, item in labelled]
     return Table(corner, [column.heading(unit) for column in columns], filled)
 
 
 def side_by_side(corner: str, columns: Iterable[tuple[str | Heading, Any]], unit: str = "") -> Table:
-    """A column an object, a row a field that declares one; see `declared_table`."""
-    told = [(own if isinstance(own, Heading) else Heading(own), of) for own, of in columns]
+    """Table with a column per object and a row per field that declares one; see `declared_table`."""
+    headed = [(head if isinstance(head, Heading) else Heading(head), item) for head, item in columns]
     rows = []
-    for column in _columns([of for _, of in told]):
+    for column in _columns([item for _, item in headed]):
         heading = column.heading(unit)
-        rows.append(Row(heading.text, tuple(column.cell(of, unit) for _, of in told), heading.style))
-    return Table(corner, [heading for heading, _ in told], rows)
+        rows.append(Row(heading.text, tuple(column.cell(item, unit) for _, item in headed), heading.style))
+    return Table(corner, [heading for heading, _ in headed], rows)
 
 
 @dataclass(frozen=True)
@@ -61,23 +61,24 @@ class _Column:
     def heading(self, unit: str) -> Heading:
         if isinstance(self.key, Heading):
             return self.key
-        own = self.shows
-        text = own.heading.format(unit=unit_sign(unit), key=self.key) + (f" [{own.unit}]" if own.unit else "")
-        style = "bold" if own.decides else "green" if own.given else ""
-        return Heading(text, style, own.form in LEFT, own.optional, own.plain, own.below, own.meaning)
+        shows = self.shows
+        text = shows.heading.format(unit=unit_sign(unit), key=self.key) + (f" [{shows.unit}]" if shows.unit else "")
+        style = "bold" if shows.decides else "green" if shows.given else ""
+        return Heading(text, style, shows.form in LEFT, shows.optional, shows.plain, shows.below, shows.meaning)
 
-    def value(self, of: Any) -> Any:
-        value = getattr(of, self.name) if self.name in columns_of(of) else None
+    def value(self, item: Any) -> Any:
+        value = getattr(item, self.name) if self.name in columns_of(item) else None
         return value if self.key is None or value is None else value.get(self.key)
 
-    def cell(self, of: Any, unit: str) -> Shown | str:
-        value, own = self.value(of), self.shows
-        return formed(value * PER[own.unit] if _is_number(value) else value, own.form, unit or getattr(of, "unit", ""))
+    def cell(self, item: Any, unit: str) -> Shown | str:
+        value, shows = self.value(item), self.shows
+        number = value * PER[shows.unit] if _is_number(value) else value
+        return formed(number, shows.form, unit or getattr(item, "unit", ""))
 
 
 def _columns(objects: list[Any]) -> Iterator[_Column]:
-    for name, shows in {name: shows for own in objects for name, shows in columns_of(own).items()}.items():
-        values = [getattr(own, name) for own in objects if name in columns_of(own)]
+    for name, shows in {name: shows for item in objects for name, shows in columns_of(item).items()}.items():
+        values = [getattr(item, name) for item in objects if name in columns_of(item)]
         mappings = [value for value in values if isinstance(value, Mapping)]
         if mappings:
             yield from (
@@ -87,18 +88,18 @@ def _columns(objects: list[Any]) -> Iterator[_Column]:
             yield _Column(name, shows)
 
 
-def headings(of: type, unit: str = "") -> list[Heading]:
-    """Heads of the columns that a class declares; those of a table of one measure have its unit."""
-    return [_Column(name, shows).heading(unit) for name, shows in shown_by(of).items()]
+def headings(kind: type, unit: str = "") -> list[Heading]:
+    """Heads of the columns that a class declares, with the unit of the measure if they are of one."""
+    return [_Column(name, shows).heading(unit) for name, shows in shown_by(kind).items()]
 
 
-def cells_of(own: Any, unit: str = "") -> list[Shown | str]:
+def cells_of(item: Any, unit: str = "") -> list[Shown | str]:
     """All declared cells of an object."""
-    return [_Column(name, shows).cell(own, unit) for name, shows in columns_of(own).items()]
+    return [_Column(name, shows).cell(item, unit) for name, shows in columns_of(item).items()]
 
 
 def formed(value: Any, form: str, unit: str = "") -> Shown | str:
-    """A value as a cell of that form; a dash for one that is not known, a text as it is."""
+    """A value as a cell of that form; a dash for None and NaN, a text as it is."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return NOTHING if form in LEFT else Shown(NOTHING, None)
     if isinstance(value, str):
@@ -111,7 +112,7 @@ def _is_number(value: Any) -> bool:
 
 
 def unit_sign(unit: str) -> str:
-    """A unit as tables of analyses have it: `µm`, `′`, nothing of a number without one."""
+    """Sign of a unit in tables: `µm`, `′`, none for a plain number."""
     return {"um": "µm", "arcmin": "′", "1": ""}.get(unit, unit)
 
 
@@ -124,14 +125,14 @@ def _range(text: Callable[[float], str], between: str) -> Callable[[Any, str], s
 
 
 def _index(value: Any, unit: str) -> Shown:
-    """A share of a variance [%] with the reach of its 95 %."""
-    reach = (value.high - value.low) / 2
+    """A share of a variance [%] with the half width of its 95 % interval."""
+    half_width = (value.high - value.low) / 2
     text = f"{100 * value.share:.1f}".replace("-0.0", "0.0")
-    return Shown(f"{text} ±{100 * reach:.1f}" if reach > 0.0 else text, 100 * value.share)
+    return Shown(f"{text} ±{100 * half_width:.1f}" if half_width > 0.0 else text, 100 * value.share)
 
 
 def _digits(value: float) -> str:
-    """Four digits that count.
+    """Number with four significant digits, or more before the point; 0 below 1e-6.
 
     >>> _digits(0.0), _digits(12.3456), _digits(-0.00123456)
     ('0', '12.35', '-0.001235')
@@ -143,7 +144,7 @@ def _digits(value: float) -> str:
 FORMS: Final[Mapping[str, Callable[[Any, str], Shown | str]]] = {
     "value": lambda value, unit: Shown(value_text(value, unit), value),
     "short": lambda value, unit: Shown(short_text(value, unit), value),
-    **{own: _number(partial(value_text, unit=own)) for own in ("um", "mm", "arcmin")},
+    **{unit: _number(partial(value_text, unit=unit)) for unit in ("um", "mm", "arcmin")},
     "ppm": _number(ppm_text),
     "ppm range": _range(ppm_text, " … "),
     "share": _number(share_text),

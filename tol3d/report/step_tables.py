@@ -1,6 +1,6 @@
-"""The features of foreign parts as tables: what each is, where it lies, and a line that selects it.
+"""Tables of STEP files: features of foreign parts, each with its place and a line that selects it.
 
-Tables of tolerances in a STEP file: datums, tolerances with their meaning in a scene, dimensions.
+And of product manufacturing information (PMI): datums, tolerances with their meaning in a scene, dimensions.
 """
 
 from collections import Counter
@@ -27,7 +27,7 @@ from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
 
 UNDIRECTED: Final = ("ball", "socket", "free form")
 TURNED: Final = ("hole", "pin", "fillet", "round", "cone")
-LONGEST_FACES: Final = 4  # faces of a feature that are listed
+LISTED: Final = 4  # faces of a feature, or layers of a file, that are listed
 WORDS: Final = (
     "a hole or pin turns more than half round, a fillet or round less; planes by the rectangle around them, or their "
     "circle; places in the frame of the part, where the middle is; `#` numbers are those of faces in this file and "
@@ -40,28 +40,28 @@ class FeatureRow:
     """A feature of a part as a screen shows it."""
 
     part: StepPart
-    of: FoundFeature
-    kind = Computed(Shows("kind", "words"), lambda own: own.of.kind + " (beside the solid)" * own.of.loose)
-    size = Computed(Shows("size [mm]", "words"), lambda own: size_text(own.of))
-    place = Computed(Shows("place [mm]"), lambda own: _numbers(own.of.at, 4))
+    feature: FoundFeature
+    kind = Computed(Shows("kind", "words"), lambda row: row.feature.kind + " (beside the solid)" * row.feature.loose)
+    size = Computed(Shows("size [mm]", "words"), lambda row: size_text(row.feature))
+    place = Computed(Shows("place [mm]"), lambda row: _numbers(row.feature.at, 4))
     direction = Computed(
-        Shows("direction"), lambda own: "–" if own.of.kind in UNDIRECTED else _numbers(own.of.direction, 4)
+        Shows("direction"), lambda row: "–" if row.feature.kind in UNDIRECTED else _numbers(row.feature.direction, 4)
     )
-    faces = Computed(Shows("faces", "words", optional=True), lambda own: _first_faces(own.of))
-    told = Computed(
+    faces = Computed(Shows("faces", "words", optional=True), lambda row: _first_faces(row.feature))
+    in_file = Computed(
         Shows("in the file", "words", optional=True),
-        lambda own: (
+        lambda row: (
             ", ".join(
                 [
-                    *_drawn(own.part, own.of),
-                    *(repr(shown(name)) for name in own.of.names),
-                    *filter(None, [own.of.colour]),
+                    *_drawn(row.part, row.feature),
+                    *(repr(shown(name)) for name in row.feature.names),
+                    *filter(None, [row.feature.colour]),
                 ]
             )
             or "–"
         ),
     )
-    line = Computed(Shows("select it by", "words"), lambda own: best_line(own.part, own.of))
+    line = Computed(Shows("select it by", "words"), lambda row: best_line(row.part, row.feature))
 
 
 @dataclass(frozen=True)
@@ -69,27 +69,31 @@ class FeatureNumbers:
     """All numbers of a feature [mm, rad, mm²]."""
 
     part: StepPart
-    of: FoundFeature
-    product = Computed(Shows("product"), lambda own: shown(own.part.name))
-    kind = Computed(Shows("kind"), lambda own: own.of.kind)
-    at = Computed(Shows("{key}", "g"), lambda own: dict(zip("xyz", own.of.at, strict=True)))
-    direction = Computed(Shows("direction {key}", "g"), lambda own: dict(zip("xyz", own.of.direction, strict=True)))
-    length = Computed(Shows("length or first extent", "g"), lambda own: own.of.extent[0])
-    width = Computed(Shows("second extent", "g"), lambda own: own.of.extent[1])
-    diameter = Computed(Shows("diameter", "g"), lambda own: 2 * own.of.radius or None)
+    feature: FoundFeature
+    product = Computed(Shows("product"), lambda row: shown(row.part.name))
+    kind = Computed(Shows("kind"), lambda row: row.feature.kind)
+    at = Computed(Shows("{key}", "g"), lambda row: dict(zip("xyz", row.feature.at, strict=True)))
+    direction = Computed(
+        Shows("direction {key}", "g"), lambda row: dict(zip("xyz", row.feature.direction, strict=True))
+    )
+    length = Computed(Shows("length or first extent", "g"), lambda row: row.feature.extent[0])
+    width = Computed(Shows("second extent", "g"), lambda row: row.feature.extent[1])
+    diameter = Computed(Shows("diameter", "g"), lambda row: 2 * row.feature.radius or None)
     smaller_diameter = Computed(
         Shows("smaller diameter", "g"),
-        lambda own: 2 * own.of.minor_radius if own.of.kind in ("cone", "torus") else None,
+        lambda row: 2 * row.feature.minor_radius if row.feature.kind in ("cone", "torus") else None,
     )
-    half_angle = Computed(Shows("half angle", "g"), lambda own: own.of.half_angle if own.of.kind == "cone" else None)
-    turn = Computed(Shows("turn", "g"), lambda own: own.of.turn if own.of.kind in TURNED else None)
-    area = Computed(Shows("area", "g"), lambda own: own.of.area)
-    faces = Computed(Shows("faces"), lambda own: numbers(own.of))
-    repeated = Computed(Shows("loose faces on it"), lambda own: ", ".join(f"#{face}" for face in own.of.repeated))
-    drawn = Computed(Shows("in the drawing"), lambda own: ", ".join(_drawn(own.part, own.of)))
-    names = Computed(Shows("names"), lambda own: ", ".join(map(shown, own.of.names)))
-    colour = Computed(Shows("colour"), lambda own: own.of.colour)
-    line = Computed(Shows("line"), lambda own: best_line(own.part, own.of))
+    half_angle = Computed(
+        Shows("half angle", "g"), lambda row: row.feature.half_angle if row.feature.kind == "cone" else None
+    )
+    turn = Computed(Shows("turn", "g"), lambda row: row.feature.turn if row.feature.kind in TURNED else None)
+    area = Computed(Shows("area", "g"), lambda row: row.feature.area)
+    faces = Computed(Shows("faces"), lambda row: numbers(row.feature))
+    repeated = Computed(Shows("loose faces on it"), lambda row: ", ".join(f"#{face}" for face in row.feature.repeated))
+    drawn = Computed(Shows("in the drawing"), lambda row: ", ".join(_drawn(row.part, row.feature)))
+    names = Computed(Shows("names"), lambda row: ", ".join(map(shown, row.feature.names)))
+    colour = Computed(Shows("colour"), lambda row: row.feature.colour)
+    line = Computed(Shows("line"), lambda row: best_line(row.part, row.feature))
 
 
 @dataclass(frozen=True)
@@ -98,13 +102,13 @@ class UseRow:
 
     product: Annotated[str, Shows("product", "words")]
     frame: Sequence[Sequence[float]]
-    origin = Computed(Shows("origin [mm]"), lambda own: _numbers(own.frame[0], 4))
-    z_axis = Computed(Shows("z"), lambda own: _numbers(own.frame[1], 6))
-    x_axis = Computed(Shows("x"), lambda own: _numbers(own.frame[2], 6))
+    origin = Computed(Shows("origin [mm]"), lambda row: _numbers(row.frame[0], 4))
+    z_axis = Computed(Shows("z"), lambda row: _numbers(row.frame[1], 6))
+    x_axis = Computed(Shows("x"), lambda row: _numbers(row.frame[2], 6))
 
 
 def features_report(file: StepFile) -> Page:
-    """A table for each product of a file that has geometry of its own."""
+    """Features of each product of a file that has geometry of its own, a table each; poses if there are several."""
     blocks: list[PageItem] = []
     for part in file.parts:
         blocks += [BLANK] if blocks else []
@@ -112,10 +116,10 @@ def features_report(file: StepFile) -> Page:
     if len(file.uses) > 1:
         blocks += [BLANK, *titled("parts as they stand in the file", _uses(file))]
     if file.layers:
-        named = ", ".join(repr(shown(layer)) for layer in file.layers[:LONGEST_FACES])
+        named = ", ".join(repr(shown(layer)) for layer in file.layers[:LISTED])
         blocks += [
             BLANK,
-            note(f"{len(file.layers)} layers are ignored: {named}{', …' if len(file.layers) > LONGEST_FACES else ''}"),
+            note(f"{len(file.layers)} layers are ignored: {named}{', …' if len(file.layers) > LISTED else ''}"),
         ]
     return page(*blocks, BLANK, note(WORDS))
 
@@ -130,33 +134,33 @@ def _uses(file: StepFile) -> Table:
 def _counted(part: StepPart) -> str:
     """Numbers of its solids, faces and features, and of those left aside."""
     solids, faces = len(part.body.solids), len(part.body.faces)
-    found = [f"{solids} solid{'s' * (solids != 1)}", f"{faces} faces", f"{len(part.features)} features"]
+    counts = [f"{solids} solid{'s' * (solids != 1)}", f"{faces} faces", f"{len(part.features)} features"]
     repeated = sum(len(feature.repeated) for feature in part.features)
     if repeated:
-        found.append(f"{repeated} loose faces that repeat its own")
+        counts.append(f"{repeated} loose faces that repeat its own")
     if loose := sum(feature.loose for feature in part.features):
-        found.append(f"{loose} features beside the solid, which no selector takes but by a face")
-    return ", ".join(found)
+        counts.append(f"{loose} features beside the solid, which no selector takes but by a face")
+    return ", ".join(counts)
 
 
 def _table(part: StepPart) -> Table:
     named = zip(names(part.features), part.features, strict=True)
-    return declared_table("", [(name, FeatureRow(part, own)) for name, own in named])
+    return declared_table("", [(name, FeatureRow(part, feature)) for name, feature in named])
 
 
 def _first_faces(feature: FoundFeature) -> str:
-    if len(feature.faces) <= LONGEST_FACES:
+    if len(feature.faces) <= LISTED:
         return numbers(feature)
-    return f"{', '.join(f'#{face}' for face in feature.faces[:LONGEST_FACES])}, … ({len(feature.faces)})"
+    return f"{', '.join(f'#{face}' for face in feature.faces[:LISTED])}, … ({len(feature.faces)})"
 
 
 def _drawn(part: StepPart, feature: FoundFeature) -> list[str]:
     """Names in the drawing on a feature: datums, tolerances and dimensions."""
-    own = {*feature.faces, *feature.repeated}
+    faces = {*feature.faces, *feature.repeated}
     return [
         shown(each.words if each.what == "datum" else f"{each.name} {each.words}".strip())
         for each in part.named
-        if own & {*each.faces}
+        if faces & {*each.faces}
     ]
 
 
@@ -184,16 +188,16 @@ def _numbers(values: Sequence[float], decimals: int) -> str:
 
 
 def features_csv(file: StepFile) -> str:
-    """All numbers with all their digits, a line a feature [mm, rad, mm²]."""
+    """CSV of all numbers with all their digits, a line per feature [mm, rad, mm²]."""
     rows = [
-        (name, FeatureNumbers(part, own))
+        (name, FeatureNumbers(part, feature))
         for part in file.parts
-        for name, own in zip(names(part.features), part.features, strict=True)
+        for name, feature in zip(names(part.features), part.features, strict=True)
     ]
     return declared_table("feature", rows).csv()
 
 
-MOST_FACES: Final = 8  # of a feature that are listed
+MOST_FACES: Final = 8  # of an annotated feature; of more only the first is listed
 PMI_WORDS: Final = (
     "frames and dimensions are in the unit that the file has them in, limits in mm or rad; `#` numbers stand in this "
     'file: those of faces select a feature in a scene, faces: ["#12", "#13"]; a + joins faces of one hole'
@@ -205,54 +209,54 @@ class DatumRow:
     """A datum of a drawing."""
 
     is_a: Annotated[str, Shows("what it is", "words")]
-    of: Datum
-    faces = Computed(Shows("faces", "words"), lambda own: _faces(own.of.features))
-    targets = Computed(Shows("targets", "words"), lambda own: shown(_targets(own.of)) or "–")
+    datum: Datum
+    faces = Computed(Shows("faces", "words"), lambda row: _faces(row.datum.features))
+    targets = Computed(Shows("targets", "words"), lambda row: shown(_targets(row.datum)) or "–")
 
 
 @dataclass(frozen=True)
 class ToleranceRow:
     """A tolerance of a drawing, and what it means in a scene."""
 
-    of: Tolerance
+    tolerance: Tolerance
     meaning: Meaning
-    unit = Computed(Shows("unit", "words"), lambda own: _unit(own.of.magnitude))
-    name = Computed(Shows("name", "words", optional=True), lambda own: shown(own.of.name) or "–")
-    at = Computed(Shows("at", "words"), lambda own: f"#{own.of.id}")
-    shape = Computed(Shows("of", "words"), lambda own: own.meaning.shape)
-    faces = Computed(Shows("faces", "words", optional=True), lambda own: _faces((own.of.feature,)))
-    how = Computed(Shows("in a scene", "words"), lambda own: own.meaning.how)
-    kind = Computed(Shows("as", "words", optional=True), lambda own: own.meaning.kind or "–")
-    why = Computed(Shows("what is lost, or why it is left out", "words"), lambda own: own.meaning.why or "–")
+    unit = Computed(Shows("unit", "words"), lambda row: _unit(row.tolerance.magnitude))
+    name = Computed(Shows("name", "words", optional=True), lambda row: shown(row.tolerance.name) or "–")
+    at = Computed(Shows("at", "words"), lambda row: f"#{row.tolerance.id}")
+    shape = Computed(Shows("of", "words"), lambda row: row.meaning.shape)
+    faces = Computed(Shows("faces", "words", optional=True), lambda row: _faces((row.tolerance.feature,)))
+    how = Computed(Shows("in a scene", "words"), lambda row: row.meaning.how)
+    kind = Computed(Shows("as", "words", optional=True), lambda row: row.meaning.kind or "–")
+    why = Computed(Shows("what is lost, or why it is left out", "words"), lambda row: row.meaning.why or "–")
 
 
 class DimensionRow(RowOf[Dimension]):
     """A dimension of a drawing."""
 
-    unit = Computed(Shows("unit", "words"), lambda own: _unit(own.of.nominal or own.of.least))
-    name = Computed(Shows("name", "words", optional=True), lambda own: shown(own.of.name) or "–")
-    at = Computed(Shows("at", "words"), lambda own: f"#{own.of.id}")
-    kind = Computed(Shows("kind", "words"), lambda own: shown(own.of.kind))
-    least = Computed(Shows("least", ".6g"), lambda own: (own.of.limits or (None, None))[0])
-    most = Computed(Shows("most", ".6g"), lambda own: (own.of.limits or (None, None))[1])
-    faces = Computed(Shows("faces", "words", optional=True), lambda own: _faces(own.of.features))
+    unit = Computed(Shows("unit", "words"), lambda row: _unit(row.of.nominal or row.of.least))
+    name = Computed(Shows("name", "words", optional=True), lambda row: shown(row.of.name) or "–")
+    at = Computed(Shows("at", "words"), lambda row: f"#{row.of.id}")
+    kind = Computed(Shows("kind", "words"), lambda row: shown(row.of.kind))
+    least = Computed(Shows("least", ".6g"), lambda row: (row.of.limits or (None, None))[0])
+    most = Computed(Shows("most", ".6g"), lambda row: (row.of.limits or (None, None))[1])
+    faces = Computed(Shows("faces", "words", optional=True), lambda row: _faces(row.of.features))
 
 
 class RemarkRow(RowOf[Remark]):
     """Parts of a file that were not read, or are incomplete."""
 
-    what = Computed(Shows("what", "words"), lambda own: shown(own.of.what))
-    why = Computed(Shows("why", "words"), lambda own: shown(own.of.why))
+    what = Computed(Shows("what", "words"), lambda row: shown(row.of.what))
+    why = Computed(Shows("why", "words"), lambda row: shown(row.of.why))
 
 
 def pmi_report(text: StepText) -> Page:
-    """Datums, tolerances, dimensions, and what was not read or is incomplete; a table is there if it has a row.
+    """Datums, tolerances, dimensions, and entries not read or incomplete; tables without rows are left out.
 
     Raises:
         StepError: the surface of a face cannot be read.
     """
     surfaces = surfaces_of(text)
-    found = Meanings(text, surfaces).all
+    meanings = Meanings(text, surfaces).all
     remarks = [*text.remarks, *disagreements(text, surfaces)]
     shapes = {
         datum.id: shape_of(datum.features[0], surfaces, text.structure).words for datum in text.datums if datum.features
@@ -260,13 +264,13 @@ def pmi_report(text: StepText) -> Page:
     datums = [(shown(datum.letter), DatumRow(shapes.get(datum.id, "–"), datum)) for datum in text.datums]
     tolerances = [
         ("  " * (each.above is not None) + shown(frame(each)), ToleranceRow(each, meaning))
-        for each, meaning in zip(text.tolerances, found, strict=True)
+        for each, meaning in zip(text.tolerances, meanings, strict=True)
     ]
     dimensions = [(shown(dimension), DimensionRow(dimension)) for dimension in text.dimensions]
     left_out = [(f"#{remark.id}", RemarkRow(remark)) for remark in remarks]
     blocks = [
         *_block("Datums", str(len(text.datums)), declared_table("letter", datums)),
-        *_block("Tolerances", _counted_pmi(found), declared_table("frame", tolerances)),
+        *_block("Tolerances", _counted_pmi(meanings), declared_table("frame", tolerances)),
         *_block("Dimensions", str(len(text.dimensions)), declared_table("dimension", dimensions)),
         *_block("Not read, or incomplete", str(len(remarks)), declared_table("at", left_out)),
     ]
@@ -279,11 +283,11 @@ def _block(title: str, counted: str, table: Table) -> list[PageItem]:
     return [BLANK, Line(((title, "bold"), (f" · {counted}", ""))), table] if table.rows else []
 
 
-def _counted_pmi(found: Sequence[Meaning]) -> str:
+def _counted_pmi(meanings: Sequence[Meaning]) -> str:
     """Numbers of tolerances, by use."""
-    counts = Counter(each.how for each in found)
+    counts = Counter(meaning.how for meaning in meanings)
     listed = ", ".join(f"{counts[how]} {how}" for how in ("said", "approximately", "left out") if counts[how])
-    return f"{len(found)}: {listed}"
+    return f"{len(meanings)}: {listed}"
 
 
 def _targets(datum: Datum) -> str:

@@ -15,7 +15,11 @@ from scipy.optimize import linprog
 from tol3d.assembly.model.moves import PointsOn
 from tol3d.assembly.model.statuses import NOT_HELD, OK, SINGULAR
 from tol3d.assembly.placing.method import answers, placed
+from tol3d.assembly.placing.plan import planned
+from tol3d.assembly.placing.rest_move import Resting
+from tol3d.assembly.presenting.tables import rest_blocks
 from tol3d.errors import InputError
+from tol3d.report.page import page
 
 Array = NDArray[np.float64]
 
@@ -239,3 +243,19 @@ def test_contacts_that_hold_a_part_barely_are_met_too(seed: int) -> None:
         gaps = ((own.points @ pose[:3, :3].T + pose[:3, 3] - own.points) * normals).sum(axis=1) - row
         assert gaps.min() > -1e-10
         assert np.abs(gaps[[int(k) - 1 for k in carriers.split()]]).max() < 1e-10
+
+
+def test_contacts_that_may_press_against_each_other_carry_any_share_from_their_least_on() -> None:
+    """Three pads by their lever arms; of two walls that face each other the one leant on carries 0.3 or more."""
+    places = np.array([[-70.0, -40.0], [90.0, -40.0], [20.0, 60.0]])
+    plate = pads(places, force=np.array([-0.3, 0.0, -1.0]), at=(10.0, 0.0))
+    walls = np.array([[-100.0, 0.0, 0.0], [130.0, 0.0, 0.0]]), np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])
+    wedged = replace(plate, points=np.vstack([plate.points, walls[0]]), normals=np.vstack([plate.normals, walls[1]]))
+    assembly = wedged.rested()
+    move = planned(assembly).moves[-1]
+    assert isinstance(move, Resting)
+    shares = np.linalg.solve(np.vstack([places.T, np.ones(3)]), [10.0, 0.0, 1.0])
+    for ends, of_walls in zip(move.carries(), ([0.3, 0.0], [np.inf, np.inf]), strict=True):
+        np.testing.assert_allclose(ends, [*shares, *of_walls], atol=1e-12)
+    (table,) = page(*rest_blocks(move, assembly)).tables
+    assert [row.cells[-1] for row in table.rows[3:]] == ["30 % or more", "0 % or more"]

@@ -1,8 +1,8 @@
-"""The motor's correction when the load changes side: its size, the remaining lost motion, and a tip over its swing.
+"""Compensation of lost motion by the motor when the load changes side: its size, the remaining error, a tip's swing.
 
-A train whose load changes side goes over to the other flanks, and its output turns by the lost motion. The motor makes
-good for it by a turn that is known beforehand: that of the batch's mean builds, or of this robot's own mean. A reducer
-of which only the maximum is known is left out of it, as in Jiang et al. 2024, section 4; it remains whole.
+If the load on a train changes side, the train goes over to the other flanks and its output turns by the lost motion.
+The motor corrects it by a turn that is known beforehand: by the mean of the batch, or by the robot's own mean. If only
+the maximum of a reducer is known, its lost motion remains whole, as in Jiang et al. 2024, section 4.
 
 Angles here are in minutes of arc and tips in mm, as in columns and in summary.json.
 """
@@ -31,11 +31,11 @@ class Correction:
     """The motor's correction by one column: a method, the closed form or a publication; None for missing values.
 
     Args:
-        means: each compensated link's own lost motion, at its driven shaft [arcmin].
-        motor: turn of the motor that makes good for them together [arcmin].
-        before: sum of all stages' highs at the shaft that is read [arcmin].
-        left: sum of the excess of their highs over their means, and of the uncompensated highs [arcmin].
-        left_of: excess of each compensated link's own high over its mean, at its driven shaft [arcmin].
+        means: mean lost motion of each compensated link, at its driven shaft [arcmin].
+        motor: turn of the motor that corrects all of them [arcmin].
+        before: sum of the highs (mean + 3 sigma) of all stages, at the shaft that is read [arcmin].
+        left: the same after the correction: highs less means, and uncompensated highs whole [arcmin].
+        left_of: high less mean of each compensated link, at its driven shaft [arcmin].
     """
 
     means: Mapping[str, float | None]
@@ -48,7 +48,7 @@ class Correction:
 def corrections_of(
     play: TrainPlay, compensated: Sequence[AnyStage], robots: Robots
 ) -> Iterator[tuple[str, Correction]]:
-    """Corrections by the closed form, by each method, and by every publication of all meshes of the train."""
+    """Corrections by column: the closed form, each method, and every publication of all links of the train."""
     for column, ends in play.ends(robots.played):
         yield column, _correction(play, compensated, ends)
 
@@ -57,19 +57,19 @@ def _correction(play: TrainPlay, compensated: Sequence[AnyStage], ends: Mapping[
     means = {stage.link: ends[stage.link].mean for stage in compensated}
     turns = {stage.link: play.motor_turns(stage) for stage in compensated}
     highs = [(stage.factor, ends[stage.link].high_3sigma) for stage in play.stages]
-    kept = [(stage.factor, 0.0 if stage not in compensated else means[stage.link]) for stage in play.stages]
-    before, known = _total(highs), _total(kept)
+    corrected = [(stage.factor, means[stage.link] if stage in compensated else 0.0) for stage in play.stages]
+    before, correction = _total(highs), _total(corrected)
     return Correction(
         means=means,
         motor=_total([(turns[link], mean) for link, mean in means.items()]),
         before=before,
-        left=None if before is None or known is None else before - known,
+        left=None if before is None or correction is None else before - correction,
         left_of={link: _total([(1.0, ends[link].high_3sigma), (-1.0, mean)]) for link, mean in means.items()},
     )
 
 
 def _total(parts: Sequence[tuple[float, float | None]]) -> float | None:
-    """The sum of factor times value; None where a value is missing."""
+    """Sum of factor times value; None if a value is missing."""
     known = [factor * value for factor, value in parts if value is not None]
     return sum(known) if len(known) == len(parts) else None
 
@@ -84,12 +84,12 @@ class Swing:
     """Errors of the tip over the output's angles.
 
     Args:
-        measure: the scene's.
+        measure: name of the scene's measure.
         output: the output's angles [rad], (positions,).
-        turned: where the load acts on the other side than at the start, (positions,).
-        jumps: the output's angles where it changes side [rad].
-        curves: the tip's error with its sign by method and state, (robots, positions) [mm].
-        flanks: by mesh of the way from the held shaft: its driver's flank that works at the start, and the other.
+        turned: True where the load acts on the other side than at the start, (positions,).
+        jumps: the output's angles at which the load changes side [rad].
+        curves: signed error of the tip by method and state, (robots, positions) [mm].
+        flanks: by mesh from the held shaft on: the driver's working flank at the start, and after a change.
     """
 
     measure: str
@@ -101,48 +101,48 @@ class Swing:
 
     @property
     def first_turned(self) -> int:
-        """The first position behind the first change of side."""
+        """Index of the first position after the first change of side."""
         return int(np.argmax(self.turned))
 
 
 def swing_of(play: TrainPlay, robots: Robots, batch: Mapping[str, float]) -> Swing | None:
-    """The first swing that the scene measures, or the usual one, of the same robots; None where the load stays.
+    """The first swing that the scene measures, or the usual one, of the same robots; None if the load keeps its side.
 
     Args:
         play: lost motion of the train.
         robots: with their own means.
-        batch: mean of what is compensated, by method [arcmin].
+        batch: mean of the compensated lost motion, by method [arcmin].
     """
-    found = play.swing()
-    if found is None:
+    swing = play.swing()
+    if swing is None:
         return None
-    lost = found.lost(tuple(batch), robots.count)
+    lost = swing.lost(tuple(batch), robots.count)
     seated = robots.seated & ~np.any([np.isnan(values).any(axis=1) for values in lost.values()], axis=0)
     return Swing(
-        measure=found.measure.name,
-        output=found.output,
-        turned=found.turned,
-        jumps=found.jumps,
+        measure=swing.measure.name,
+        output=swing.output,
+        turned=swing.turned,
+        jumps=swing.jumps,
         curves={
-            name: _curves(found, name, lost[name][seated], robots.own[name][seated], batch[name]) for name in batch
+            name: _curves(swing, name, lost[name][seated], robots.own[name][seated], batch[name]) for name in batch
         },
-        flanks=dict(found.flanks()),
+        flanks=dict(swing.flanks()),
     )
 
 
-def _curves(swing: TrainSwing, method: str, lost: Array, own: Array, batch: float) -> Mapping[State, Array]:
-    """Tip errors [mm] of lost motions (robots, positions) [arcmin], less the motor's correction."""
+def _curves(swing: TrainSwing, method: str, lost: Array, robot: Array, batch: float) -> Mapping[State, Array]:
+    """Tip errors [mm] by lost motions (robots, positions) [arcmin], less the correction by batch or robot (robots,)."""
     return {
         "before": swing.tip_error(method, lost),
         "batch": swing.tip_error(method, lost - batch),
-        "robot": swing.tip_error(method, lost - own[:, None]),
+        "robot": swing.tip_error(method, lost - robot[:, None]),
     }
 
 
 Unit = Literal["mm", "arcmin"]
 
-MOST_ROBOTS: Final = 2000  # where nobody says how many
-POSITIONS: Final = 16
+MOST_ROBOTS: Final = 2000  # unless a number is stated
+POSITIONS: Final = 16  # for a robot's own mean, by default
 
 
 @dataclass(frozen=True)
@@ -162,34 +162,34 @@ class CompensationQuestion:
 
 @dataclass(frozen=True, eq=False)
 class Remaining:
-    """Signed error of each robot at a random position that a method leaves, (robots,) by state.
+    """Signed error of each assembled robot at a random position, by state, (robots,).
 
     Args:
-        angles: of the shaft that is read [arcmin].
-        tips: of the arm's point [mm]; empty without an arm.
+        angles: errors of the shaft that is read [arcmin].
+        tips: errors of the arm's tip [mm]; empty without an arm.
     """
 
     angles: Mapping[State, Array]
     tips: Mapping[State, Array]
 
     def in_unit(self, unit: Unit) -> Mapping[State, Array]:
-        """Errors of the unit: tips are in mm, turns in minutes of arc."""
+        """Errors in a unit: of tips in mm, of the shaft in minutes of arc."""
         return self.tips if unit == "mm" else self.angles
 
 
 @dataclass(frozen=True, eq=False)
 class Compensation:
-    """The answer for a scene.
+    """Result of a compensation analysis.
 
     Args:
-        name: of the scene's file.
-        play: the lost motion that is compensated, of the train whose motor is corrected.
-        compensated, left_out: the stages whose mean is known, and those of which only the maximum is.
+        name: of the scene's file, without its extension.
+        play: the compensated lost motion, of the train whose motor is corrected.
+        compensated, left_out: stages whose mean is known, and those of which only the maximum is known.
         positions: number of positions over which a robot's own mean was taken.
-        corrections: by column; methods, the closed form and who published.
-        remaining: by method.
-        form_sigmas: of the error at the shaft by the closed form [arcmin], by state; empty where there is none.
-        swing: the tip over the swing; None where the scene measures none.
+        corrections: by column: methods, the closed form and publications.
+        remaining: errors by method.
+        form_sigmas: sigma of the error at the shaft by the closed form [arcmin], by state; empty without one.
+        swing: errors of the tip over a swing; None if the load keeps its side.
         robots, failed: number drawn, and number of these that could not be assembled.
     """
 
@@ -207,17 +207,17 @@ class Compensation:
 
     @property
     def method(self) -> str:
-        """The leading method: the 3D simulation where there is one."""
+        """The leading method: the 3D simulation if there is one."""
         return "geometric" if "geometric" in self.remaining else "analytic"
 
     @property
     def units(self) -> tuple[Unit, ...]:
-        """Units in which the error is known: of the tip if there is an arm, and of the turn."""
+        """Units in which the error is known: mm of the tip if there is an arm, and minutes of arc of the shaft."""
         return ("mm", "arcmin") if self.play.tip else ("arcmin",)
 
     @property
     def lever(self) -> float | None:
-        """Lever arm of the tip [mm]."""
+        """Lever arm of the tip [mm]; None without an arm."""
         tip = self.play.tip
         return tip.tip.lever if tip and tip.tip else None
 
@@ -228,12 +228,12 @@ def compensation(
     """Correction of the motor when the load changes side, and the remaining error.
 
     Args:
-        scene: as `load` gives it.
+        scene: from `load`.
         question: options of the analysis.
         overrides: values that replace those of the scene's study.
 
     Raises:
-        InputError: no such train, or no link in it.
+        InputError: no such train, no link in it, or shafts in bores that deviate, too.
     """
     simulation = _of_gears(scene, _simulation_of(scene, question, replace(overrides, witness=0)))
     play = _play_of(scene, simulation, _train_of(scene, simulation, question.train))
@@ -256,10 +256,11 @@ def compensation(
     )
 
 
-# what is asked ------------------------------------------------------------------------------------
+# simulation ---------------------------------------------------------------------------------------
 
 
 def _simulation_of(scene: Scene, question: CompensationQuestion, overrides: Overrides) -> Simulation:
+    """The scene's simulation with a trial per robot: the number asked for, or the study's up to MOST_ROBOTS."""
     if question.robots is not None:
         return simulation_of(scene, replace(overrides, trials=question.robots))
     simulation = simulation_of(scene, overrides)
@@ -271,10 +272,10 @@ def _simulation_of(scene: Scene, question: CompensationQuestion, overrides: Over
 
 
 def _of_gears(scene: Scene, simulation: Simulation) -> Simulation:
-    """The simulation of a machine's gears alone, whose lost motions are the same: nothing else acts on them.
+    """The simulation of a machine's gears alone, whose lost motions are the same, because nothing else acts on them.
 
     Raises:
-        SceneError: the shafts of the gears lie in bores, which deviate too.
+        SceneError: the shafts of the gears lie in bores, which deviate, too.
     """
     for move, shaft in shafts_in_bores(simulation.system):
         words = f"expected trains whose shafts lie in no bores, got {shaft!r} in those of a part"
@@ -294,7 +295,7 @@ def _train_of(scene: Scene, simulation: Simulation, name: str | None) -> Train:
 
 
 def _play_of(scene: Scene, simulation: Simulation, train: Train) -> TrainPlay:
-    """The lost motion at a random position, read where and as another measure is, or else at the train's output."""
+    """The lost motion at a random position, read as by a measure of the train, or else at its output."""
     play = TrainPlay.of(scene, simulation, train)
     if not play.stages:
         words = f"nothing to compensate: there is no link between {train.held!r} and {play.shaft!r}"
@@ -302,7 +303,7 @@ def _play_of(scene: Scene, simulation: Simulation, train: Train) -> TrainPlay:
     return play
 
 
-# what is left -------------------------------------------------------------------------------------
+# remaining error ----------------------------------------------------------------------------------
 
 
 def _remaining(play: TrainPlay, robots: Robots, method: str, batch: float) -> Remaining:
@@ -315,8 +316,8 @@ def _remaining(play: TrainPlay, robots: Robots, method: str, batch: float) -> Re
 def _form_sigmas(play: TrainPlay, positions: int) -> Mapping[State, float]:
     """Sigma of the remaining error by the closed form [arcmin].
 
-    A robot's own mean takes away all that stays as it is within a robot. What turns with a gear is left, and the own
-    mean's error with it, for P positions do not average it out.
+    A robot's own mean removes all that is constant within a robot. Deviations that turn with a gear remain, and so does
+    the error of the own mean, because P positions do not average them out.
     """
     if play.form is None:
         return {}

@@ -1,4 +1,4 @@
-"""The features of a drafted part: each is selected once, under one name, even if several name its faces."""
+"""The features of a drafted part: each is selected once, under one name, even if several callouts name its faces."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,8 +11,9 @@ from tol3d.cad.step import FoundFeature, Selector, StepError, StepPart, Triple, 
 from tol3d.numerics.arrays import Array
 
 USABLE: Final = frozenset(("plane", "hole", "pin", "fillet", "round", "cone", "ball", "socket"))
-SHORTEST_NAMES: Final = 40  # characters of a PMI name by which a feature is selected; longer ones are data
+LONGEST_PMI_NAME: Final = 40  # characters of a PMI name by which a feature is selected; longer ones are data
 AXES: Final = frozenset(("hole", "pin", "fillet", "round"))
+"""Kinds that a scene has as cylinders."""
 OPPOSED: Final = -1.0 + 1e-9
 
 
@@ -24,7 +25,7 @@ class Group:
         name: in the scene.
         members: the features, in the order of their numbers.
         line: their selection, as YAML.
-        slot: both walls, of a slot or tab; else none.
+        slot: both walls of a slot or tab; empty for other features.
         comment: text after the line.
     """
 
@@ -43,7 +44,7 @@ class Group:
 
     @property
     def kind(self) -> str:
-        """Kind of the members, as in a scene."""
+        """Kind of the members in a scene."""
         if self.slot:
             return "slot"
         first = self.members[0]
@@ -73,31 +74,34 @@ class Features:
     groups: list[Group] = field(default_factory=list)
 
     def of_faces(self, faces: Sequence[int], skipped: frozenset[str] = frozenset()) -> list[FoundFeature]:
-        """The features of the part that some faces are; of a plane that is known already that one, whole.
+        """The features of the part to which faces belong.
+
+        Some faces of a plane are a plane of their own, or the whole of one that is selected already.
 
         Args:
-            faces: by their numbers.
+            faces: their numbers.
             skipped: kinds of features that are passed over.
 
         Raises:
-            StepError: a scene can use one of them for nothing.
+            StepError: a feature cannot be used in a scene, or there is none.
         """
-        found: list[FoundFeature] = []
-        for own in self.part.features:
-            here = [face for face in faces if face in own.faces]
-            if not here and not set(faces) & {*own.repeated}:
+        features: list[FoundFeature] = []
+        for feature in self.part.features:
+            common = [face for face in faces if face in feature.faces]
+            if not common and not set(faces) & {*feature.repeated}:
                 continue
-            if own.kind in skipped:
+            if feature.kind in skipped:
                 continue
-            if own.kind not in USABLE:
-                raise StepError(f"a {own.kind} is not simulated")
-            if own.kind == "plane" and here and len(here) < len(own.faces):
-                known = next((plane for plane in self.planes() if {*plane.faces} & {*here}), None)
-                own = known or replace(self.part.shell.made_of(here), on=own.on)
-            found.append(own)
-        if not found:
+            if feature.kind not in USABLE:
+                raise StepError(f"a {feature.kind} is not simulated")
+            if feature.kind == "plane" and 0 < len(common) < len(feature.faces):
+                known = next((plane for plane in self.planes() if {*plane.faces} & {*common}), None)
+                features.append(known or replace(self.part.shell.made_of(common), on=feature.on))
+            else:
+                features.append(feature)
+        if not features:
             raise StepError("it has no face that a scene can use")
-        return found
+        return features
 
     def planes(self) -> Iterator[FoundFeature]:
         """Planes that are selected already."""
@@ -106,39 +110,44 @@ class Features:
                 yield from group.members
 
     def largest(self) -> list[FoundFeature]:
-        """The two features of most area, or the one that there is.
+        """The two usable features of largest area, or the only one.
 
         Raises:
-            StepError: there is none.
+            StepError: there is no usable feature.
         """
         usable = [feature for feature in self.part.features if feature.kind in USABLE and not feature.loose]
         if not usable:
             raise StepError(f"{shown(self.part.name)}: expected a flat or round face, found free forms alone")
-        return sorted(usable, key=lambda own: -own.area)[:2]
+        return sorted(usable, key=lambda feature: -feature.area)[:2]
 
     def named(self, member: FoundFeature) -> tuple[Group, str] | None:
-        """The group that has a feature, and its name; None where none has."""
+        """The group that holds a feature, and the feature's name; None if it is not selected."""
         for group in self.groups:
-            for own, name in zip(group.members, group.names, strict=True):
-                if not group.slot and own.faces == member.faces:
+            for selected_member, name in zip(group.members, group.names, strict=True):
+                if not group.slot and selected_member.faces == member.faces:
                     return group, name
         return None
 
     def name(self, member: FoundFeature, wish: str = "") -> str:
-        """The name of one feature, which is selected if it was not."""
+        """Name of a feature, which is selected if it is not yet.
+
+        Args:
+            member: the feature.
+            wish: a name for it.
+        """
         known = self.named(member)
         return known[1] if known else self.add([member], wish).name
 
     def slot(self, walls: Sequence[FoundFeature], wish: str = "") -> Group:
-        """The slot or tab between two walls, by its numbers."""
+        """The slot or tab between two walls, stated by its dimensions; a tab if the first wall faces away."""
         for group in self.groups:
-            if group.slot and {own.faces for own in group.slot} == {wall.faces for wall in walls}:
+            if group.slot and {wall.faces for wall in group.slot} == {wall.faces for wall in walls}:
                 return group
         first, second = walls
-        there = np.subtract(second.at, first.at)
+        between = np.subtract(second.at, first.at)
         across = np.array(first.direction)
-        width = float(across @ there)
-        middle = np.array(first.at) + there / 2
+        width = float(across @ between)
+        middle = np.array(first.at) + between / 2
         tab = width < 0.0
         name = self.names.new(wish, "tab" if tab else "slot")
         sides = ", ".join(length(min(pair)) for pair in zip(first.extent, second.extent, strict=True))
@@ -153,7 +162,7 @@ class Features:
         return made
 
     def projected(self, member: FoundFeature, along: Triple, wish: str) -> Group:
-        """A hole by its numbers, with its axis along a direction: a zone is projected beyond its end there."""
+        """A hole stated by its dimensions, with its axis along a direction, beyond whose end a zone is projected."""
         name = self.names.new(wish, member.kind)
         line = (
             f"{{kind: cylinder, at: {place(member.at)}, axis: {direction(along)}, length: {length(member.length)}, "
@@ -164,7 +173,7 @@ class Features:
         return made
 
     def disc(self, member: FoundFeature, middle: Array, normal: Array, radius: float) -> Group:
-        """A face that turns about an axis, as a disc by its numbers."""
+        """A face of a part that turns about an axis, as a disc stated by its dimensions."""
         line = f"{{kind: plane, at: {place(middle)}, normal: {direction(normal)}, radius: {length(radius)}}}"
         made = Group(
             self.names.new("", self.kind_name(member.kind)), (member,), line,
@@ -174,22 +183,24 @@ class Features:
         return made
 
     def add(self, members: Sequence[FoundFeature], wish: str = "", letter: str = "", pmi: Sequence[str] = ()) -> Group:
-        """Features that are none yet, selected under one name.
+        """Select features under one name.
 
         Args:
-            members: of one kind and size.
+            members: of one kind and size, none selected yet.
             wish: a name for them.
-            letter: that of the datum that they are.
+            letter: of the datum that they are, if they are one.
             pmi: names of their tolerances and dimensions in the drawing.
+
+        Raises:
+            StepError: no single line selects several.
         """
         ordered = tuple(by_place(members))
-        if len(ordered) > 1 and (line := self.selector(ordered, letter, pmi)) is None:
+        line = self.selector(ordered, letter, pmi)
+        if line is None and len(ordered) > 1:
             raise StepError("no one line selects them")
         first = ordered[0]
         name = self.names.new(wish, self.kind_name(first.kind), len(ordered))
-        found = self.selector(ordered, letter, pmi)
-        line = found if found is not None else self.by_faces(first)
-        made = Group(name, ordered, line, comment=described(ordered))
+        made = Group(name, ordered, line or self.by_faces(first), comment=described(ordered))
         self.groups.append(made)
         return made
 
@@ -203,15 +214,15 @@ class Features:
         return f"{kind} {count}"
 
     def selector(self, members: Sequence[FoundFeature], letter: str, pmi: Sequence[str]) -> str | None:
-        """A line that means just these features; None where none does."""
+        """A line that selects just these features, by datum, PMI name, size or place; None if none does."""
         count = len(members) if len(members) > 1 else None
         counted = f", count: {count}" if count else ""
         tries: list[tuple[str, Selector]] = []
         if letter:
             tries.append((f"{{datum: {scalar(letter)}{counted}}}", Selector(datum=letter, count=count)))
-        for own in pmi:
-            if own and len(own) <= SHORTEST_NAMES and own.isprintable():
-                tries.append((f"{{pmi: {scalar(own)}{counted}}}", Selector(pmi=own, count=count)))
+        for pmi_name in pmi:
+            if pmi_name and len(pmi_name) <= LONGEST_PMI_NAME and pmi_name.isprintable():
+                tries.append((f"{{pmi: {scalar(pmi_name)}{counted}}}", Selector(pmi=pmi_name, count=count)))
         first = members[0]
         round_one = first.kind in ("hole", "pin", "ball", "socket")
         size = round(2 * first.radius, 6)
@@ -232,7 +243,7 @@ class Features:
         return None
 
     def by_faces(self, member: FoundFeature) -> str:
-        """A feature by its faces alone."""
+        """A line that selects a feature by its faces."""
         whole = any(feature.faces == member.faces for feature in self.part.features)
         if whole:
             return f'{{face: "#{member.faces[0]}"}}'
@@ -240,13 +251,13 @@ class Features:
 
 
 def faces_of(member: FoundFeature) -> str:
-    """The numbers of its faces, the first few."""
+    """Numbers of the feature's first four faces."""
     more = ", …" if len(member.faces) > 4 else ""
     return ", ".join(f"#{face}" for face in member.faces[:4]) + more
 
 
 def described(members: Sequence[FoundFeature]) -> str:
-    """Description of features, for a comment."""
+    """Number, kind, size [mm] and faces of features, for a comment."""
     first = members[0]
     if first.kind == "plane" and not first.radius:
         size = f"{first.extent[0]:.6g} × {first.extent[1]:.6g}"

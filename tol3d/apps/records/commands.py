@@ -103,8 +103,8 @@ def identify(
     settings = Settings(
         unit=unit,
         j0=None if j0 is None else stated("--j0", j0, "angle"),
-        j0_half_width=stated("--j0-half-width", j0_half_width, "angle"),
-        encoder_error=stated("--encoder-error", encoder_error, "angle"),
+        j0_half_width=stated("--j0-half-width", j0_half_width, "angle", 0.0),
+        encoder_error=stated("--encoder-error", encoder_error, "angle", 0.0),
         drift=drift,
     )
     if out is not None:
@@ -159,8 +159,8 @@ def rig(
         turns=turns,
         samples=samples,
         repeats=repeats,
-        noise=stated("--noise", noise, "angle"),
-        resolution=stated("--resolution", resolution, "angle"),
+        noise=stated("--noise", noise, "angle", 0.0),
+        resolution=stated("--resolution", resolution, "angle", 0.0),
         encoder1=stated("--encoder1", encoder1, "angle"),
         encoder2=stated("--encoder2", encoder2, "angle"),
         tooth_mesh=stated("--tooth-mesh", tooth_mesh, "angle"),
@@ -207,8 +207,8 @@ def plan_rig(
     own = Rig(
         samples=samples,
         repeats=repeats,
-        noise=stated("--noise", noise, "angle"),
-        resolution=stated("--resolution", resolution, "angle"),
+        noise=stated("--noise", noise, "angle", 0.0),
+        resolution=stated("--resolution", resolution, "angle", 0.0),
     )
     simulation = _simulation(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
     specimen = _specimen(simulation, mesh, None, _Stated(e1, theta1, e2, theta2, backlash))

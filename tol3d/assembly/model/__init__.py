@@ -1,6 +1,6 @@
-"""Model of an assembly, nominal and by its drawings: input of both methods, of which it computes nothing.
+"""Model of an assembly, nominal and by its drawings: input of both methods, without any computation.
 
-Part frames, feature frames and poses are 4x4, lengths mm. Nominal poses of parts are in the world.
+Frames and poses are 4x4, lengths mm. Nominal poses of parts are in the world, frames of features in their part.
 """
 
 from tol3d.assembly.model.assembly import Assembly, Part

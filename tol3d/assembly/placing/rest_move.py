@@ -24,32 +24,38 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 SLIGHT = 1e-5
-"""Fraction of the force added to it to see which contacts would carry if it pointed slightly aside."""
+"""Fraction of the force added aside of it, to see which contacts would carry if it pointed slightly aside."""
 MISSED = 1e-9
-"""Fraction of a force left over by contacts that counts as none."""
+"""Fraction of a force not balanced by contacts that counts as none."""
+MISSED_ASIDE = 1e-3
+"""The same of the force added aside."""
+DEPENDENT = 1e-9
+"""Singular value of contacts' rows below which one of them depends on the others."""
+SHORTEST = 1e-300  # a length by which a vector is divided, which may be 0
 OUTCOMES: Codes = np.array([OK, NO_BUILD, SINGULAR, NOT_HELD, SINGULAR], dtype=np.int8)
+"""Status by outcome of the solver: RESTS, CLASHES, LOST, TIPS, BETWEEN."""
 
 
 @dataclass(frozen=True, eq=False)
 class Resting(RockingPlacer):
-    """A rest with its nominal contacts; solved in the world, with the middle of the part's features at 0.
+    """A rest with its nominal contacts; solved in the world, about the middle of the touching features.
 
     Args:
         move: the move.
-        middle: of the part's features that touch, in its frame (3, 1) [mm].
-        origin: where that lies nominally in the world (3, 1) [mm].
-        reach: of the contacts about it [mm].
-        start: the nominal pose there (3, 4, 1).
+        middle: of the part's touching features, in its frame (3, 1) [mm].
+        origin: nominal place of the middle in the world (3, 1) [mm].
+        reach: largest distance of the contacts from it [mm].
+        start: the nominal pose about it (3, 4, 1).
         relations: that are kept, if there are any.
-        undo: steps that undo a change of what they keep (6, kept).
-        all_rows: how nominal gaps change with turn times reach and shift (contacts, 6). steps: motions that contacts
-            see and relations leave, turn times reach and shift (6, motions).
-        rows: how nominal gaps change with the motions (contacts, motions).
-        pull: of the force, along the motions (motions,).
-        basis: contacts that would carry if all were touched, one for each motion.
+        undo: steps that undo a change of the kept constraints (6, kept).
+        all_rows: changes of nominal gaps per turn times reach and shift (contacts, 6) [mm/mm].
+        steps: motions that change gaps and keep relations, turn times reach and shift (6, motions).
+        rows: changes of nominal gaps per motion (contacts, motions).
+        pull: generalised force along the motions (motions,).
+        basis: contacts that would carry if all touched, one per motion.
         inverse: of their rows (motions, motions).
-        loads: on them, of the force and of what it leans to (2, motions).
-        nudge: by which the part is moved on once it rests, along the motions (motions, n); default: none.
+        loads: on them, by the force and by the direction that decides where the force does not (2, motions).
+        nudge: displacement of the part after it rests, along the motions (motions, n); default: none.
     """
 
     move: Rest
@@ -82,21 +88,21 @@ class Resting(RockingPlacer):
             pose, before, kept = self.relations.met(world)
             start, kept = _array(pose, self.middle, self.origin), kept.about(self.middle)
         contacts = _contacts(self.move, world, self.middle, self.origin)
-        self._found((*contacts, kept.vectors, kept.normals, start), kept.shifts, (turn, shift, carried, outcomes))
+        self._solve((*contacts, kept.vectors, kept.normals, start), kept.shifts, (turn, shift, carried, outcomes))
         if self.nudge is not None:
             turn, shift = self._moved_on(self.nudge, turn, shift)
         pose = Pose(turn, shift + self.origin - rotated(turn, self.middle))
         placed = world.with_part_at(self.move.part, pose).with_loads(self.move.name, carried)
         return placed, np.where(before == OK, OUTCOMES[outcomes], before).astype(np.int8)
 
-    def _found(self, given: Sequence[Array], kept_shifts: Array, results: Sequence[Array | Codes]) -> None:
-        """Fill in poses (3, 3, n) and (3, n), loads of contacts (contacts, n), and outcomes (n,).
+    def _solve(self, given: Sequence[Array], kept_shifts: Array, results: Sequence[Array | Codes]) -> None:
+        """Solve for poses (3, 3, n) and (3, n), loads of contacts (contacts, n), and outcomes (n,).
 
         Args:
             given: points, normals and heights of contacts, constraints by relations, and the first pose; (..., n) or
                 (..., 1).
             kept_shifts: see Kept.
-            results: filled in.
+            results: these arrays, written.
         """
         on_part, force = self.move.points_on == "part", (self.undo, self.move.force, self.move.at - self.middle[:, 0])
         nominal = (self.all_rows, self.rows, self.steps, self.basis, self.inverse, self.loads)
@@ -104,18 +110,19 @@ class Resting(RockingPlacer):
         rests_found(
             *contacts[:3], on_part, *contacts[3:], kept_shifts, *force, *nominal, start, self.reach, *results
         )  # fmt: skip
-        for outcome, found in ((LOST, tilted_rests_found), (BETWEEN, balances_found)):
+        for outcome, solve in ((LOST, tilted_rests_found), (BETWEEN, balances_found)):
             trials = np.flatnonzero(results[-1] == outcome)
             if len(trials):
-                *own, begin = (each if each.shape[-1] == 1 else _of(each, trials) for each in given)
-                some = [_of(result, trials) for result in results]
-                found(*own[:3], on_part, *own[3:], kept_shifts, *force, self.steps, begin, self.reach, *some)
-                for each, its in zip(results, some, strict=True):
-                    each[..., trials] = its
+                *inputs, begin = (array if array.shape[-1] == 1 else _of(array, trials) for array in given)
+                parts = [_of(result, trials) for result in results]
+                solve(*inputs[:3], on_part, *inputs[3:], kept_shifts, *force, self.steps, begin, self.reach, *parts)
+                for result, part in zip(results, parts, strict=True):
+                    result[..., trials] = part
         for pose in results[:2]:
             pose[..., results[-1] != RESTS] = np.nan
 
     def _moved_on(self, by: Array, turn: Array, shift: Array) -> tuple[Array, Array]:
+        """Rotations and shifts after a small displacement along the motions (motions, n), to second order."""
         moved = self.steps @ by
         x, y, z = moved[:3] / self.reach
         none = np.zeros_like(x)
@@ -124,18 +131,21 @@ class Resting(RockingPlacer):
         return turn + once + product(skew, once) / 2.0, shift + moved[3:]
 
     def carries(self) -> tuple[Array, Array]:
-        """The least and the largest part of the force that each contact may carry (contacts,)."""
-        ends = [
-            [
-                linprog(sign * one, A_eq=self.rows.T, b_eq=-self.pull, method="highs").fun
-                for one in np.eye(len(self.rows))
-            ]
-            for sign in (1.0, -1.0)
-        ]
-        return np.array(ends[0]), -np.array(ends[1])
+        """The least and the largest part of the force that each contact may carry (contacts,).
+
+        Contacts that may press against each other have no largest part: inf.
+        """
+        least, most = [], []
+        for one in np.eye(len(self.rows)):
+            low, high = (
+                linprog(sign * one, A_eq=self.rows.T, b_eq=-self.pull, method="highs").fun for sign in (1.0, -1.0)
+            )
+            least.append(low)
+            most.append(np.inf if high is None else -high)
+        return np.array(least), np.array(most)
 
     def asked(self, assembly: Assembly, middle: Array) -> Iterator[Asked]:
-        """Its relations, then its contacts all at once."""
+        """The constraints of its relations, then those of its contacts, all at once."""
         if self.relations is not None:
             yield from self.relations.mating.asked(assembly, middle)
         rows = np.hstack([self.all_rows[:, 3:], self.reach * self.all_rows[:, :3]])
@@ -144,24 +154,25 @@ class Resting(RockingPlacer):
         yield Asked(words, rows_about(rows, self.origin[:, 0] - middle))
 
     def leaning(self, along: Array) -> "Resting":
-        """The same, pushed to the limit along a motion (motions,) where it may rock."""
+        """The same rest, with the part pushed along a motion (motions,) if it may rock."""
         basis, inverse, loads = first_basis(self.rows, self.pull, along)
         return replace(self, basis=basis, inverse=inverse, loads=loads)
 
     def nudged(self, by: Array) -> "Resting":
-        """The same, moved on along the motions (motions, n), to second order."""
+        """The same rest, with the part displaced along the motions afterwards (motions, n), to second order."""
         return replace(self, nudge=by)
 
 
 def resting(move: Rest, nominal: World) -> Resting:
-    """A rest.
+    """Nominal contacts of a rest.
 
     Args:
         move: the move.
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:
-        InputError: the contacts do not hold the part against the force, or leave it free to move across the force.
+        InputError: the contacts do not hold the part against the force, the force does not press it against all of
+            them, or relations leave them nothing to hold.
     """
     pose = nominal.poses[move.part]
     on_part = move.points_on == "part"
@@ -196,13 +207,13 @@ def _of(array: NDArray[Any], trials: NDArray[np.intp]) -> NDArray[Any]:
 def _array(pose: Pose, middle: Array, origin: Array) -> Array:
     """Poses (3, 4, n) of a middle (3, 1) about an origin (3, 1)."""
     shift = pose.point(middle) - origin
-    made = np.empty((3, 4, max(pose.turn.shape[-1], shift.shape[-1])))
-    made[:, :3], made[:, 3] = pose.turn, shift
-    return made
+    poses = np.empty((3, 4, max(pose.turn.shape[-1], shift.shape[-1])))
+    poses[:, :3], poses[:, 3] = pose.turn, shift
+    return poses
 
 
 def _seen(rows: Array, kept: Array, reach: float) -> Array:
-    """Steps, turn times reach and shift (6, steps), that contacts or relations see."""
+    """Steps, turn times reach and shift (6, steps), that change gaps or kept constraints."""
     both = np.vstack([rows, kept])
     return seen_steps(free_motions(np.hstack([both[:, 3:], both[:, :3] * reach]), np.zeros(3), reach), reach)
 
@@ -213,33 +224,38 @@ def generic(motions: int) -> Array:
 
 
 def first_basis(rows: Array, pull: Array, along: Array) -> tuple[NDArray[np.int64], Array, Array]:
-    """Contacts that carry a force and, if several sets do, a force tilted along another motion too.
+    """Contacts that carry a force; if several sets do, those that carry it tilted slightly along another motion, too.
+
+    Args:
+        rows: changes of gaps per motion (contacts, motions).
+        pull: generalised force (motions,).
+        along: the other motion (motions,).
 
     Returns:
         Contacts (motions,), the inverse of their rows (motions, motions), loads on them of both (2, motions).
     """
-    wanted = along / max(float(np.linalg.norm(along)), 1e-300)
-    shares, _ = nnls(rows.T, -(pull + SLIGHT * wanted))
+    direction = along / max(float(np.linalg.norm(along)), SHORTEST)
+    shares, _ = nnls(rows.T, -(pull + SLIGHT * direction))
     basis = np.argsort(-shares, kind="stable")[: len(pull)]
     if np.linalg.matrix_rank(rows[basis]) < len(pull):
         basis = _completed(rows, np.flatnonzero(shares > 0.0))
     inverse = np.ascontiguousarray(np.linalg.inv(rows[basis]))
-    loads = np.array([-(pull @ inverse), -(wanted @ inverse)])
+    loads = np.array([-(pull @ inverse), -(direction @ inverse)])
     loads[0, np.abs(loads[0]) < TIED] = 0.0
     return basis.astype(np.int64), inverse, loads
 
 
 def _completed(rows: Array, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Contacts that carry, and others that make them as many as motions."""
+    """Contacts that carry, and others with independent rows that make them as many as motions."""
     basis = list(chosen)
     for k in range(len(rows)):
-        if len(basis) < rows.shape[1] and np.linalg.matrix_rank(rows[[*basis, k]], tol=1e-9) > len(basis):
+        if len(basis) < rows.shape[1] and np.linalg.matrix_rank(rows[[*basis, k]], tol=DEPENDENT) > len(basis):
             basis.append(k)
     return np.array(basis)
 
 
 def _refuse_unheld(move: Rest, rows: Array, pull: Array, free: Array, reach: float, origin: Array) -> None:
-    """Refuse contacts whose forces cannot balance the one on the part, with its resulting motion.
+    """Refuse contacts whose forces cannot balance the one on the part; the message names the resulting motion.
 
     Args:
         free: steps that relations leave (6, steps).
@@ -254,13 +270,13 @@ def _refuse_unheld(move: Rest, rows: Array, pull: Array, free: Array, reach: flo
 
 
 def _refuse_loose(move: Rest, rows: Array, pull: Array, steps: Array, reach: float, origin: Array) -> None:
-    """Refuse contacts against which no force presses the part, with the motion by which it may leave them."""
+    """Refuse contacts against which the force does not press the part; the message names the motion away from them."""
     own_rows, own_pull = rows @ steps, pull @ steps
     for step in np.eye(len(own_pull)):
         for aside in (step, -step):
             leaning = own_pull + SLIGHT * aside
             shares, left = nnls(own_rows.T, -leaning)
-            if left > 1e-3 * SLIGHT:
+            if left > MISSED_ASIDE * SLIGHT:
                 motion = _world_motion(steps @ (leaning + own_rows.T @ shares), reach, origin)
                 raise InputError(
                     f"moves.{move.name}: the force does not press {move.part} against all of its contacts: "
@@ -270,28 +286,28 @@ def _refuse_loose(move: Rest, rows: Array, pull: Array, steps: Array, reach: flo
 
 
 def _world_motion(step: Array, reach: float, origin: Array) -> Array:
-    """A step, turn times reach and shift at an origin, as a motion about the world's (1, 6)."""
+    """A step, turn times reach and shift at an origin, as a motion about the world's origin (1, 6), largest entry 1."""
     turn, shift = step[:3] / reach, step[3:]
-    size = max(float(np.abs(step).max()), 1e-300)
+    size = max(float(np.abs(step).max()), SHORTEST)
     return np.concatenate([shift - np.cross(turn, origin), turn])[None] / size
 
 
 def _contacts(move: Rest, world: World, middle: Array, origin: Array) -> tuple[Array, Array, Array]:
-    """Points, normals (contacts, 3, n) and heights (contacts, n); a gap is as `rests.gap_of` has it.
+    """Points and normals (contacts, 3, n) and heights (contacts, n) of the gaps by `one_sided_gaps.gap_of`.
 
     Args:
         move: the move.
         world: before it.
-        middle: about which they are in the part's frame (3, 1) [mm].
-        origin: about which they are in the world (3, 1) [mm].
+        middle: point of the part's frame about which those of the part are (3, 1) [mm].
+        origin: point of the world about which those of the world are (3, 1) [mm].
     """
     contacts = [_contact(move, pair, world, middle, origin) for pair in move.pairs]
-    return _stacked([contact[0] for contact in contacts]), _stacked([contact[1] for contact in contacts]), _stacked(
-        [contact[2] for contact in contacts]
-    )  # fmt: skip
+    points, normals, heights = (_stacked(arrays) for arrays in zip(*contacts, strict=True))
+    return points, normals, heights
 
 
 def _contact(move: Rest, pair: Pair, world: World, middle: Array, origin: Array) -> tuple[Array, Array, Array]:
+    """Point, normal (3, n) and height (n,) of one contact; see `_contacts`."""
     locator, (foot, normal) = total(pair.locator, 1, world.columns)[0], side_of(pair, move, world)
     if move.points_on == "part":
         pose = world.poses[world.part_of(pair.target)]

@@ -1,10 +1,10 @@
 """Parts on one-sided contacts under a force, trial by trial: the finite pose by the nominal lever arms.
 
 Each step solves a linear programme about the pose reached: the farthest motion along the force with no gap below 0, by
-the dual simplex method with the nominal lever arms; then gaps are found again. Several motions may go as far: a second
-direction, which counts where the first one is met alike, chooses among them (a lexicographic programme). A pose counts
-if the force presses all that carry by the lever arms of the pose, too; other trials are `tilted_rests`'. Each trial
-begins with the same contacts, so that it has the same bits alone and among thousands.
+the dual simplex method with the nominal lever arms; then gaps are evaluated again. If several motions go equally far, a
+second direction chooses among them (a lexicographic programme). A pose is accepted if the force presses all loaded
+contacts by the lever arms of the pose, too; other trials are left to `tilted_rest_solver`. Each trial begins with the
+same contacts, so that it has the same bits alone and among thousands.
 """
 
 from typing import Any, Final
@@ -18,13 +18,14 @@ from tol3d.numerics.programme import NO_ROOM, OK, exchanged, new_rooms
 
 TIED: Final = 1e-9
 """Fraction of the force below which a contact carries nothing."""
-
-
 STEPS: Final = 60
+"""Most programmes of a trial."""
+
 RESTS: Final = 0
 CLASHES: Final = 1
 """No motion opens all gaps: the part does not fit."""
 LOST: Final = 2
+"""Not decided by the nominal lever arms."""
 TIPS: Final = 3
 """Nothing stops the part: it tips off its contacts, or slides."""
 BETWEEN: Final = 4
@@ -35,7 +36,7 @@ BETWEEN: Final = 4
 def settled(
     pose: Any, contacts: Any, i: int, on_part: bool, kept: Any, programme: Any, begun: Any, rooms: Any, reach: float
 ) -> int:
-    """Follow a part along the force from a pose, by nominal rows; returns its status."""
+    """Move a part along the force from a pose to rest, by the nominal rows; returns RESTS, CLASHES or LOST."""
     all_rows, rows, steps = programme
     basis, (_, inverse, sides, loads, shares) = begun
     lower, upper, step, motion = rooms
@@ -45,9 +46,9 @@ def settled(
             lower[k] = -gap_of(pose, contacts, k, i, on_part)
             for r in range(6):
                 lower[k] -= all_rows[k, r] * step[r]
-        found, _, _ = exchanged(rows, lower, upper, basis, inverse, sides, loads, shares, motion)
-        if found != OK:
-            return CLASHES if found == NO_ROOM and n == 0 else LOST
+        solved, _, _ = exchanged(rows, lower, upper, basis, inverse, sides, loads, shares, motion)
+        if solved != OK:
+            return CLASHES if solved == NO_ROOM and n == 0 else LOST
         for r in range(6):
             for j in range(rows.shape[1]):
                 step[r] += steps[r, j] * motion[j]
@@ -64,7 +65,7 @@ def pressed(
     pose: Any, contacts: Any, i: int, on_part: bool, kept: Any, force: Any, steps: Any, begun: Any, rooms: Any,
     reach: float,
 ) -> bool:  # fmt: skip
-    """True if, with the lever arms of the pose too, the force presses all contacts that carry load nominally."""
+    """True if the force presses all loaded contacts by the lever arms of the pose, too."""
     basis, (matrix, _, _, loads, right) = begun
     all_rows, pull, tangents = rooms
     rows_at(pose, contacts, i, on_part, reach, all_rows)
@@ -100,9 +101,9 @@ def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
 
 
 @nested
-def note(outcome: int, pose: Any, basis: Any, loads: Any, i: int, found: Any) -> None:
+def note(outcome: int, pose: Any, basis: Any, loads: Any, i: int, results: Any) -> None:
     """Store the pose of a part, and the loads of its contacts if it rests."""
-    turns, shifts, carried = found
+    turns, shifts, carried = results
     rests = outcome in (RESTS, BETWEEN)
     for k in range(carried.shape[0]):
         carried[k, i] = 0.0
@@ -145,28 +146,30 @@ def rests_found(
     carried: Any,
     outcomes: Any,
 ) -> None:
-    """Poses of parts at rest: of the middle of the features that touch, from where it lies nominally.
+    """Poses of parts at rest: of the middle of the touching features, about its nominal place.
 
-    What is on the part is counted from the middle, along the part's axes; what is in the world from its nominal place.
+    Points and normals of the part are about the middle, along the part's axes; those of the world about its nominal
+    place.
 
     Args:
-        points, normals, heights: of the contacts (contacts, 3, n) and (contacts, n), see gap_of; (..., 1) of what does
-            not vary.
-        on_part: whether the points are on the part.
-        kept_vectors, kept_normals: of what stays as it begins, n . (R p + s t), p and n (kept, 3, n).
+        points, normals, heights: of the contacts (contacts, 3, n) and (contacts, n), see `one_sided_gaps.gap_of`;
+            (..., 1) if they do not vary.
+        on_part: True if the points are on the part.
+        kept_vectors, kept_normals: p and n of constraints n . (R p + s t), which stay as they begin (kept, 3, n).
         kept_shifts: s (kept,).
-        kept_steps: turn by reach and shift, that undo a change of it (6, kept).
+        kept_steps: steps (turn times reach, shift) that undo a change of each constraint (6, kept).
         force, at: direction (3,) in the world; a point of the part on its line (3,) [mm].
-        all_rows: how nominal gaps change with turn by reach and shift (contacts, 6).
-        rows: how nominal gaps change with the motions (contacts, motions) [mm/mm].
-        steps: of the motions, turn by reach and shift (6, motions).
-        first_basis, first_inverse: contacts that would carry if all were touched, one for each motion; of their rows.
-        first_loads: on them, of the force and of the second direction (2, motions).
-        start: the pose before contacts count (3, 4, n).
-        reach: of the points about the middle [mm].
-        turns, shifts: found (3, 3, n), (3, n) [mm], the middle's shift; of no meaning where it does not rest.
-        carried, outcomes: part of the force on each contact (contacts, n); RESTS, CLASHES, or LOST of what the arms of
-            the pose decide (n,).
+        all_rows: changes of nominal gaps per turn times reach and shift (contacts, 6) [mm/mm].
+        rows: changes of nominal gaps per motion (contacts, motions) [mm/mm].
+        steps: the motions, turn times reach and shift (6, motions).
+        first_basis, first_inverse: contacts that would carry if all touched, one per motion, and the inverse of their
+            rows.
+        first_loads: loads on them of the force and of the second direction (2, motions).
+        start: the pose before contacts are met (3, 4, n).
+        reach: largest distance of the points from the middle [mm].
+        turns, shifts: written: the rotation (3, 3, n) and the middle's shift (3, n) [mm]; meaningless unless it rests.
+        carried, outcomes: written: part of the force on each contact (contacts, n), and RESTS, CLASHES, or LOST where
+            the lever arms of the pose decide (n,).
     """
     contacts, programme = (points, normals, heights), (all_rows, rows, steps)
     count, motions = rows.shape
@@ -174,7 +177,7 @@ def rests_found(
     kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
     basis, solving = np.empty(motions, np.int64), new_rooms(motions)
     begun, rooms = (basis, solving), (np.empty(count), np.empty(count), np.empty(6), np.empty(motions))
-    there = (np.empty((count, 6)), np.empty(6), np.empty((6, motions)))
+    at_pose = (np.empty((count, 6)), np.empty(6), np.empty((6, motions)))
     fill(rooms[1], np.inf)
     for i in range(outcomes.shape[0]):
         begin(pose, first, start, i, kept)
@@ -183,7 +186,8 @@ def rests_found(
         fill(solving[2], -1.0)
         copy_matrix(solving[3], first_loads)
         outcome = settled(pose, contacts, i, on_part, kept, programme, begun, rooms, reach)
-        if outcome == RESTS and not pressed(pose, contacts, i, on_part, kept, (force, at), steps, begun, there, reach):
-            outcome = LOST
+        if outcome == RESTS:
+            held = pressed(pose, contacts, i, on_part, kept, (force, at), steps, begun, at_pose, reach)
+            outcome = RESTS if held else LOST
         outcomes[i] = outcome
         note(outcome, pose, basis, solving[3], i, (turns, shifts, carried))

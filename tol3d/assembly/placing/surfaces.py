@@ -11,35 +11,35 @@ from tol3d.assembly.placing.poses import NO_LENGTH, cross, dot, unit
 from tol3d.numerics.arrays import Array
 
 PARALLEL: Final = 1e-6
-"""Sine of the angle of two axes that nominally lie along each other, not across."""
+"""Sine of the angle between two axes below which they are nominally parallel."""
 
 
 def touching_distance(start: ActualFeature, end: ActualFeature, columns: Array) -> Array:
-    """The sum of two radii, or their difference where one is inside the other (n,) or (1,) [mm]."""
-    radii = [actual_size(own.feature, columns) / 2 for own in (start, end)]
+    """Distance of axes or middles at contact (n,) or (1,) [mm]: the sum of the radii, or hole less pin."""
+    radii = [actual_size(side.feature, columns) / 2 for side in (start, end)]
     if start.feature.shape.inner:
         return radii[0] - radii[1]
     return radii[1] - radii[0] if end.feature.shape.inner else radii[0] + radii[1]
 
 
 def is_inside(start: Shape, end: Shape) -> bool:
-    """True if one of the two is a bore or a socket, in which the other lies."""
+    """True if one of the two is a bore or a socket that holds the other."""
     return start.inner or end.inner
 
 
 def gap_of(start: ActualFeature, end: ActualFeature, columns: Array, *, parallel: bool) -> Array:
     """Least gap between two surfaces over the length that both have (n,) [mm]; negative if they overlap.
 
-    A cylinder in a bore is judged from the axes, over the stretch of its axis whose feet lie on the bore's: the bore's
-    radius less the farthest foot and its own. Cylinders outside each other are as far apart as their axes are between
-    their ends, less the radii. Over a plane a cylinder is judged by its lines, where its axis is over the plane, or all
-    along where it is over none of it. Parallel cylinders that have no length in common are judged at the ends that face
-    each other. Spheres and points have one place; planes and cylinders beside them have no ends, see `common_normal`.
+    A cylinder in a bore: the radius of the bore less its own, less the largest distance of the axes along the length in
+    common. Cylinders outside each other: the least distance of their axes between their ends, less the radii. A
+    cylinder over a plane: the least height of its lines where its axis is over the plane, or all along if it is over
+    none of it. Parallel cylinders without a length in common are read at the ends that face each other. A sphere or
+    point has one place; the plane or cylinder beside it has no ends then, see `common_normal`.
 
     Args:
         start, end: the features in one frame.
         columns: the deviations, (width, n) [mm].
-        parallel: whether two axes nominally lie along each other.
+        parallel: True if two axes are nominally parallel.
     """
     touching = touching_distance(start, end, columns)
     match start.feature.shape.surface, end.feature.shape.surface:
@@ -61,9 +61,9 @@ def gap_of(start: ActualFeature, end: ActualFeature, columns: Array, *, parallel
 
 
 def _stretch(middle: Array, half: Array, reach: Array | float) -> tuple[Array, Array]:
-    """From where to where an axis, -1 to 1 from end to end, has its feet on another feature (n,), (n,).
+    """First and last place of an axis, -1 to 1 from end to end, whose foot lies on another feature (n,), (n,).
 
-    The first is the larger one where none of them has.
+    If no foot does, the first is larger than the last.
 
     Args:
         middle: along the other feature, from its middle to the foot of the axis' middle (n,) [mm].
@@ -76,7 +76,7 @@ def _stretch(middle: Array, half: Array, reach: Array | float) -> tuple[Array, A
 
 
 def _crossing(middle: Array, half: Array, reach: float) -> tuple[Array, Array]:
-    """From where to where an axis is within a reach, by one coordinate or two together (n,), (n,); see `over`."""
+    """First and last place of an axis within a reach, by one coordinate or two together (n,), (n,); see `over`."""
     if len(middle) == 1:
         return _stretch(middle[0], half[0], reach)
     square = half[0] * half[0] + half[1] * half[1]
@@ -88,7 +88,7 @@ def _crossing(middle: Array, half: Array, reach: float) -> tuple[Array, Array]:
 
 
 def over(plane: Shape, middle: Array, half: Array) -> tuple[Array, Array]:
-    """From where to where an axis, -1 to 1 from end to end, is over a plane (n,), (n,); all of it if it is nowhere.
+    """First and last place of an axis, -1 to 1 from end to end, over a plane (n,), (n,); its ends if it is nowhere.
 
     Args:
         plane: the plane.
@@ -104,16 +104,16 @@ def _above(plane: ActualFeature, line: ActualFeature, radius: Array) -> Array:
     """Least height of a cylinder's lines over a plane (n,) [mm], where its axis is over the plane."""
     normal, apart, (half,) = plane.direction, line.origin - plane.origin, line.spans
     shape, turn, rise = plane.feature.shape, plane.pose.turn, dot(half, normal)
-    places = (np.stack(np.broadcast_arrays(*(dot(own, turn[:, k]) for k in (0, 1)))) for own in (apart, half))
+    places = (np.stack(np.broadcast_arrays(*(dot(vector, turn[:, k]) for k in (0, 1)))) for vector in (apart, half))
     low, high = over(shape, *places)
     sine = np.sqrt(np.maximum(1.0 - rise * rise / dot(half, half), 0.0))
     return np.asarray(dot(apart, normal) + np.minimum(low * rise, high * rise) - radius * sine)
 
 
 def _aside(actual_feature: ActualFeature, other: ActualFeature) -> tuple[NDArray[np.bool_], Array, Array]:
-    """Distances of an axis from another one at both ends of the length that they have in common (n,), (n,) [mm].
+    """True if two axes have a length in common (n,), and their distances at both ends of it (n,), (n,) [mm].
 
-    The first is True where they have some (n,); else the distances are those at the ends that face each other.
+    Without a length in common the distances are those at the ends that face each other.
     """
     direction, apart, (half,) = actual_feature.direction, other.origin - actual_feature.origin, other.spans
     middle, step = dot(apart, direction), dot(half, direction)
@@ -128,24 +128,24 @@ def _between(start: ActualFeature, end: ActualFeature) -> Array:
 
     Source: C. Ericson, Real-Time Collision Detection, 5.1.9.
     """
-    apart, (own,), (other,) = end.origin - start.origin, start.spans, end.spans
-    own_square, other_square, both = dot(own, own), dot(other, other), dot(own, other)
-    own_share, other_share = dot(own, apart), dot(other, apart)
-    spread = own_square * other_square - both * both
-    free = np.where(spread > 0.0, own_share * other_square - other_share * both, 0.0)
-    own_at = np.clip(free / np.where(spread > 0.0, spread, 1.0), -1.0, 1.0)
-    other_at = np.clip((both * own_at - other_share) / other_square, -1.0, 1.0)
-    own_at = np.clip((both * other_at + own_share) / own_square, -1.0, 1.0)
-    nearest = apart + other_at * other - own_at * own
+    apart, (half,), (end_half,) = end.origin - start.origin, start.spans, end.spans
+    square, end_square, both = dot(half, half), dot(end_half, end_half), dot(half, end_half)
+    along, end_along = dot(half, apart), dot(end_half, apart)
+    spread = square * end_square - both * both
+    free = np.where(spread > 0.0, along * end_square - end_along * both, 0.0)
+    at = np.clip(free / np.where(spread > 0.0, spread, 1.0), -1.0, 1.0)
+    end_at = np.clip((both * at - end_along) / end_square, -1.0, 1.0)
+    at = np.clip((both * end_at + along) / square, -1.0, 1.0)
+    nearest = apart + end_at * end_half - at * half
     return np.asarray(np.sqrt(dot(nearest, nearest)))
 
 
 def common_normal(start: ActualFeature, end: ActualFeature, *, parallel: bool) -> tuple[Array, Array]:
-    """The direction from one to the other (3, n), and their distance along it (n,) [mm].
+    """Unit normal from start to end, between planes, axes and middles (3, n), and their distance along it (n,) [mm].
 
     Args:
         start, end: the features in one frame.
-        parallel: whether two axes lie along each other; the middle of `end` counts then.
+        parallel: True if two axes are nominally parallel: the normal is then at the middle of `end`.
     """
     apart = end.origin - start.origin
     match start.feature.shape.surface, end.feature.shape.surface:

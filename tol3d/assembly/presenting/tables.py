@@ -231,13 +231,10 @@ class ContactRow:
 def rest_blocks(plan: RockingPlacer, assembly: Assembly) -> Sequence[PageItem]:
     """Range of the force carried by each contact of a part at rest."""
     least, most = plan.carries()
-    rows = [
-        (
-            str(k),
-            ContactRow(touched(assembly, moving), touched(assembly, target), f"{100 * low:.0f} to {100 * high:.0f} %"),
-        )
-        for k, ((moving, target), low, high) in enumerate(zip(plan.contacts, least, most, strict=True), 1)
-    ]
+    rows = []
+    for k, ((moving, target), low, high) in enumerate(zip(plan.contacts, least, most, strict=True), 1):
+        carries = f"{100 * low:.0f} to {100 * high:.0f} %" if np.isfinite(high) else f"{100 * low:.0f} % or more"
+        rows.append((str(k), ContactRow(touched(assembly, moving), touched(assembly, target), carries)))
     return titled(f"contacts of {plan.move.name}, one-sided", declared_table("", rows))
 
 

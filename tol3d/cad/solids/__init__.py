@@ -1,4 +1,4 @@
-"""Measuring strips, display meshes and STEP from a part's CAD solid; cached, so a warm run loads no CAD."""
+"""Measuring strips, display meshes and STEP files of CAD solids; cached, so that a later run loads no CAD."""
 
 from tol3d.cad.solids.built_shape import BuiltShape, PosedShape, SweptShape
 from tol3d.cad.solids.display_mesh import DisplayMesh, display_mesh, export_step, paint_of, surface_of

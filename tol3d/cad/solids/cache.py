@@ -1,4 +1,4 @@
-"""Arrays kept on disk under the hash of all that made them: uncompressed .npz in the cache's folder."""
+"""Arrays of solids kept on disk, under the hash of all inputs: uncompressed .npz in the cache's folder."""
 
 import hashlib
 import io
@@ -21,15 +21,14 @@ from tol3d.gears import Gear
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
 from tol3d.numerics.sources import sources_of
 
-PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "scipy")
-
-
+PACKAGES: Final = ("cadquery", "cadquery-ocp", "numpy", "scipy")
+"""Packages whose versions decide the arrays."""
 FACES: Final = TypeAdapter(tuple[PickedFace, ...])
 """Faces as they are kept."""
 
 
 class CacheWarning(UserWarning):
-    """The cache cannot be used; results are the same, only slower."""
+    """The cache cannot be written; results are the same, only slower."""
 
 
 def cached(
@@ -37,19 +36,19 @@ def cached(
 ) -> Arrays:
     """The arrays of `build`, from the disk if they have been built before.
 
+    Those of a builder without source, as of a program that is typed in, are built anew each time.
+
     Args:
         kind: of the arrays; part of the key and the start of the file's name.
         shape, settings: inputs of `build` besides the program itself.
         build: makes them.
-
-    What a builder without source makes is not kept.
 
     Warns:
         CacheWarning: the folder cannot be written; the arrays are returned all the same.
     """
     try:
         name = f"{kind}-{_key(kind, shape, settings)}.npz"
-    except (OSError, ValueError):  # a builder without source, as of a program that is typed in
+    except (OSError, ValueError):  # a builder without source
         return build()
     kept = _read(name)
     if kept is not None:
@@ -70,8 +69,8 @@ def picked(shape: BuiltShape, picks: Sequence[Pick]) -> tuple[PickedFace, ...]:
         PickError: a pick means no face, or several.
         GeometryError: the solid cannot be built.
     """
-    asked = json.dumps([asdict(pick) for pick in picks], sort_keys=True)
-    kind = f"faces-{hashlib.sha256(asked.encode()).hexdigest()[:16]}"
+    picks_text = json.dumps([asdict(pick) for pick in picks], sort_keys=True)
+    kind = f"faces-{hashlib.sha256(picks_text.encode()).hexdigest()[:16]}"
 
     def build() -> Arrays:
         return {"faces": np.frombuffer(FACES.dump_json(tuple(cad().pick_faces(shape, picks))), dtype=np.uint8)}
@@ -80,21 +79,21 @@ def picked(shape: BuiltShape, picks: Sequence[Pick]) -> tuple[PickedFace, ...]:
 
 
 def _key(kind: str, shape: Gear | Body | BuiltShape, settings: Mapping[str, float]) -> str:
-    made_of = {
+    inputs = {
         "kind": kind,
         "shape": repr(shape),
         "settings": dict(settings),
         "versions": {name: _version(name) for name in PACKAGES},
-        "sources": sources_of(CAD, *_made_in(shape)),
+        "sources": sources_of(CAD, *_builder_modules(shape)),
     }
     if isinstance(shape, BuiltShape):
-        made_of["builder"] = shape.builder
+        inputs["builder"] = shape.builder
     # repr and json write the shortest text that gives back the same double, so no two shapes share a key
-    return hashlib.sha256(json.dumps(made_of, sort_keys=True).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()
 
 
-def _made_in(shape: Gear | Body | BuiltShape) -> tuple[str, ...]:
-    """Modules besides this package's that determine a shape."""
+def _builder_modules(shape: Gear | Body | BuiltShape) -> tuple[str, ...]:
+    """Module of a shape's builder; none of gears and bodies, which CAD itself builds."""
     return (shape.builder.partition(":")[0],) if isinstance(shape, BuiltShape) else ()
 
 
@@ -111,8 +110,8 @@ def _read(name: str) -> Arrays | None:
         return None
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as entries:
-            return {name: entries[name] for name in entries.files}
-    except (ValueError, EOFError, zipfile.BadZipFile):  # whole, but no arrays
+            return {array: entries[array] for array in entries.files}
+    except (ValueError, EOFError, zipfile.BadZipFile):  # a whole file, but not one of arrays
         return None
 
 

@@ -1,4 +1,4 @@
-"""Gears and other bodies, with their poses."""
+"""Gears, shafts and arms, with their poses."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ Collar = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class ShaftBody:
-    """A cylinder about z from start to end [mm], thicker at collars: diameter, start and end of each."""
+    """A cylinder about z from start to end [mm], thicker at collars: diameter, start and end of each [mm]."""
 
     diameter: float
     start: float
@@ -22,7 +22,7 @@ class ShaftBody:
 
 @dataclass(frozen=True)
 class ArmBody:
-    """Round bars of a diameter [mm] from the z axis through points [mm] in the frame of the arm's shaft."""
+    """Round bars of one diameter [mm] from the z axis through points [mm] in the frame of the arm's shaft."""
 
     points: tuple[Point, ...]
     diameter: float
@@ -33,7 +33,7 @@ Body = ShaftBody | ArmBody
 
 @dataclass(frozen=True, eq=False)
 class PosedGear:
-    """A gear, the name of its part, and its pose: (4, 4), rotation and translation [mm]."""
+    """A gear, the name of its part, and its pose (4, 4) [mm]."""
 
     name: str
     gear: Gear
@@ -47,7 +47,7 @@ class PosedGear:
 
 @dataclass(frozen=True, eq=False)
 class PosedBody:
-    """A shaft or an arm, its name, and its pose: (4, 4), rotation and translation [mm]."""
+    """A shaft or an arm, its name, and its pose (4, 4) [mm]."""
 
     name: str
     shape: Body

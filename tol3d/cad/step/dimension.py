@@ -27,6 +27,8 @@ LOCATIONS: Final = (
 )
 Role = Literal["toleranced", "basic", "reference"]
 ROLES: Final[Mapping[str, Role]] = {"theoretical": "basic", "auxiliary": "reference"}
+LIMIT_WORDS: Final = {"maximum": "MAX", "minimum": "MIN", "average": "AVG"}
+"""Words of a drawing beside a value, by those of the file."""
 KIND_SIGNS: Final = {
     "diameter": "⌀",
     "radius": "R",
@@ -100,6 +102,7 @@ class Dimension:
             said += deviations(self.minus.written, self.plus.written)
         if self.fit is not None:
             said += f" {self.fit.code}"
+        said += "".join(f" {LIMIT_WORDS[note]}" for note in self.notes if note in LIMIT_WORDS)
         return {"basic": f"[{said}]", "reference": f"({said})", "toleranced": said}[self.role]
 
 
@@ -185,7 +188,7 @@ class Dimensions:
         record = item.record("QUALIFIED_REPRESENTATION_ITEM")
         listed = [self.file[reference] for reference in record.references(-1)] if record is not None else []
         words = [each.needed("TYPE_QUALIFIER").text(0).strip() for each in listed if each.record("TYPE_QUALIFIER")]
-        return [word for word in words if word in ("maximum", "minimum", "average")]
+        return [word for word in words if word in LIMIT_WORDS]
 
     def sides(self, instance: Instance) -> tuple[str, tuple[NamedFeature, ...]]:
         """The kind of a dimension, and its features."""

@@ -1,4 +1,4 @@
-"""RV reducers, as a mechanism: cycloid discs on crankshafts among pins, and the spur gears before them."""
+"""RV reducers as a mechanism: cycloid discs on crankshafts among pins, and the spur gears that drive them."""
 
 from typing import Final
 
@@ -27,4 +27,4 @@ CYCLOID: Final = Mechanism(
     starters="tol3d.gearing.cycloid:starters",
     requires=("python-fcl", "cadquery"),
 )
-"""RV reducers."""
+"""The mechanism of RV reducers; it extends that of gears."""

@@ -1,14 +1,14 @@
-"""The witness: distances between measuring strips of the CAD flanks, by the Flexible Collision Library.
+"""The witness: distances between measuring strips of the CAD flanks, by the Flexible Collision Library (FCL).
 
-One BVH a tooth flank, as full-width strips. FCL gives no depth of overlap, so the strips are pulled inward by a slack
-along their normals, and both nearest points are put back afterwards by the same amounts: the gap is their distance
-along the line on which FCL found them. The flanks may overlap by up to the slack of both and the distance stays away
-from zero. Between flanks that line is the normal of both, and the shift back is the slack. An edge that touches (a tip,
-an end of the face) was pulled along a normal of its own, delta off that line, and comes back beside it by slack sin
-delta, from where the other flank curves away by (slack sin delta)^2/(2 r): that is added. What is left of it is 0.0073
-um per millimetre of module at delta = 0.46 rad.
+Each tooth flank is one bounding volume hierarchy of full-width strips. FCL gives no depth of overlap, so the strips are
+pulled inward by a slack along their normals, and both nearest points are moved back afterwards by the same amounts: the
+gap is their distance along the line on which FCL found them. The flanks may overlap by up to both slacks before the
+distance reaches zero. Between flanks that line is the normal of both, and the shift back is the slack. A touching edge
+(a tip, an end of the face) was pulled along a normal of its own, delta off that line, and comes back beside it by slack
+sin delta, where the other flank has curved away by (slack sin delta)^2/(2 r): that is added. The remaining error is
+0.0073 um per millimetre of module at delta = 0.46 rad.
 
-All lengths here scale with the module, so that geometrically similar gears read alike.
+All lengths here scale with the module, so that geometrically similar gears have similar gaps.
 """
 
 import math
@@ -38,13 +38,13 @@ Numbers = tuple[float, ...]
 class DeviatedStrips:
     """The strips of a model's gears, moved along their normals by each flank's deviation.
 
-    Strips are rebuilt for each flank with its own deviations, trial by trial; both ends of a generator are moved, so
-    that a flank that is turned about its profile stays ruled.
+    Strips are rebuilt for each flank with its own deviations, trial by trial. Both ends of a generator are moved, so
+    that a flank with a helix deviation stays ruled.
 
     Args:
         model: gears and meshes.
-        strips: of every gear, by name, as its solid has them.
-        places: where the coefficients of flanks lie.
+        strips: nominal ones of every gear by name, sampled from its solid.
+        places: indices of the coefficients of flanks.
     """
 
     model: Model
@@ -52,17 +52,17 @@ class DeviatedStrips:
     places: FlankPlaces
 
     def numbers(self, build: Build, seat: int, row: int, tooth: int, flank: Flank) -> Numbers:
-        """Coefficients of a flank in a row of builds, its tooth counted as the mesh does."""
-        own = self.model.seats[seat]
-        if build.flanks is None or own.gear not in self.places.starts:
+        """Coefficients [mm] of a flank in a row of builds; `tooth` is counted as in the mesh."""
+        gear_seat = self.model.seats[seat]
+        if build.flanks is None or gear_seat.gear not in self.places.starts:
             return ()
-        gear = self.model.gear(own.gear).gear
-        ahead = round(own.ahead / gear.angular_pitch)
-        slot = self.places.starts[own.gear] + int(flank_slot(gear.teeth, tooth - ahead, flank))
+        gear = self.model.gear(gear_seat.gear).gear
+        ahead = round(gear_seat.ahead / gear.angular_pitch)
+        slot = self.places.starts[gear_seat.gear] + int(flank_slot(gear.teeth, tooth - ahead, flank))
         return tuple(build.flanks.values[build.flanks.row[row], slot : slot + SHAPES].tolist())
 
     def of(self, gear: str, flank: Flank, numbers: Numbers) -> FlankStrips:
-        """The strips of a gear, one flank of it deviated."""
+        """The strips of a gear, one flank deviated by its coefficients [mm]."""
         strips = self.strips[gear]
         if not any(numbers):
             return strips
@@ -81,20 +81,20 @@ class DeviatedStrips:
 
 
 SLACK = 0.012  # modules a flank; deep enough for any start of the turn, small against the curvature radius
-MESHES_KEPT = 64  # strips kept for reuse; a constant temperature needs one a flank, flanks of their own some a turn
-SECTION_WIDTH = 0.8e-3  # modules along the face; a gap that grows with it by 1 um a mm is read 0.001 um off at 2.5 mm
+MESHES_KEPT = 64  # strips kept for reuse; one per flank at constant temperature, more with single-flank deviations
+SECTION_WIDTH = 0.8e-3  # modules along the face; at module 2.5 a gap that grows by 1 um per mm is 0.001 um off
 LAST_STEP = 0.2e-3  # modules; the gap is linear in the turn to 0.4e-6 modules over it
-OUT_OF_REACH = 0.4e-3  # modules; a distance below this has lost its normal: the overlap is as deep as the slack
+OUT_OF_REACH = 0.4e-3  # modules; below this distance the normal is lost: the overlap is as deep as both slacks
 
 
 class FclEngine:
     """Gaps from the measuring strips of every gear of a model.
 
+    FCL's objects do not pickle: the engine is made in the worker.
+
     Args:
         model: gears and meshes.
         strips: measuring strips of each gear by name, sampled from its solid.
-
-    FCL's objects do not pickle: make the engine in the worker.
     """
 
     def __init__(self, model: Model, strips: Mapping[str, FlankStrips]) -> None:
@@ -102,12 +102,12 @@ class FclEngine:
         self._strips = strips
         self._deviated = DeviatedStrips(model, strips, FlankPlaces.of(model))
         self._nearest = NearestPoints()
-        # apart: a gear between two others is held in one mesh and moved in the other, and an object keeps its place
+        # two caches: a gear between two others is held in one mesh and moved in the other, and an object has one pose
         self._held = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
         self._moved = lru_cache(maxsize=MESHES_KEPT)(self._make_object)
 
     def depth(self, mesh: Mesh) -> float:
-        """Overlap [mm] that can still be measured: the slack of both flanks."""
+        """Overlap [mm] that can still be measured: the slack of both flanks less OUT_OF_REACH."""
         return (2 * SLACK - OUT_OF_REACH) * _module(mesh)
 
     def last_step(self, mesh: Mesh) -> float:
@@ -116,7 +116,7 @@ class FclEngine:
 
     @property
     def chord_error(self) -> float:
-        """Largest sagitta [mm] of a strip's steps; a pair's gap is at most the sum of two too large."""
+        """Largest sagitta [mm] of a strip's steps; a pair's gap is too large by at most the sum of two."""
         return max(strips.chord_error for strips in self._strips.values())
 
     def _make_object(self, gear: str, flank: Flank, scale: float, span: Span, numbers: Numbers = ()) -> Surface:
@@ -157,42 +157,42 @@ class FclEngine:
             self._shapes(build, driver, at[0], driver_teeth[at], flank),
             self._shapes(build, driven, at[0], driven_teeth[at], mating),
         )
-        for row, pair, own, its in zip(*at, *shapes, strict=True):
-            fixed = self._held(mesh.driver, flank, scales[row, driver], span, own)
-            moved = self._moved(mesh.driven, mating, scales[row, driven], WHOLE_FACE, its)
+        for row, pair, driver_shape, driven_shape in zip(*at, *shapes, strict=True):
+            fixed = self._held(mesh.driver, flank, scales[row, driver], span, driver_shape)
+            moved = self._moved(mesh.driven, mating, scales[row, driven], WHOLE_FACE, driven_shape)
             put(moved, rotation[row, pair], translation[row, pair])
             distance[row, pair], points[row, pair], triangles[row, pair] = nearest(fixed, moved)
         back, curvature = np.full(points.shape, np.nan), np.full((*wanted.shape, 2), np.nan)
         at_end = np.zeros(wanted.shape, dtype=bool)
         poses = ((np.eye(3), np.zeros(3)), (rotation[at], translation[at]))
         gears = ((mesh.driver, driver, span, flank), (mesh.driven, driven, WHOLE_FACE, mating))
-        for side, ((gear, seat, width, own_flank), (turn, shift), each) in enumerate(
+        for side, ((gear, seat, width, side_flank), (turn, shift), side_shapes) in enumerate(
             zip(gears, poses, shapes, strict=True)
         ):
             scale, triangle = scales[at[0], seat], triangles[..., side][at]
-            own = frames.apply(frames.transposed(turn), points[..., side, :][at] - shift)
-            strips = [(self._strip(gear, own_flank, width, shape), rows) for shape, rows in _alike(each)]
-            put_back, bent, ends = read_strips(strips, scale, triangle, own)
+            in_gear = frames.apply(frames.transposed(turn), points[..., side, :][at] - shift)
+            strips = [(self._strip(gear, side_flank, width, shape), rows) for shape, rows in _alike(side_shapes)]
+            put_back, bent, ends = read_strips(strips, scale, triangle, in_gear)
             back[..., side, :][at] = frames.apply(turn, put_back)
             curvature[..., side][at] = bent
             at_end[at] |= ends
-        found = Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh), at_end)
-        return found.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
+        result = Found(distance, points, back, curvature, distance < OUT_OF_REACH * _module(mesh), at_end)
+        return result.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
 
     def _shapes(self, build: Build, seat: int, rows: Teeth, teeth: Teeth, flank: Flank) -> list[Numbers]:
-        """Single-flank deviations of a gear for the requested pairs (pairs,)."""
+        """Single-flank coefficients of a gear for the requested pairs (pairs,)."""
         pairs = zip(rows.tolist(), teeth.tolist(), strict=True)
         return [self._deviated.numbers(build, seat, row, tooth, flank) for row, tooth in pairs]
 
     def _section(self, mesh: Mesh) -> Span:
-        """A strip of the driver's face, SECTION_WIDTH modules wide, in the middle of the common face."""
+        """Part of the driver's face, SECTION_WIDTH modules wide, in the middle of the common face."""
         half = SECTION_WIDTH * _module(mesh) / (2 * mesh.pair.pinion.face_width)
         return mesh.pair.pinion_section - half, mesh.pair.pinion_section + half
 
     def _flank_poses(self, build: Build, gear: int, angle: Array, teeth: Teeth, flank: Flank) -> tuple[Array, Array]:
-        """Poses of the flanks of some teeth: the tooth's place, turned by the flank's own turn.
+        """Poses of the flanks of some teeth: the tooth's pose, turned by the flank's own turn.
 
-        For an involute that turn is a thickness deviation exactly: parallel involutes are one involute turned.
+        For an involute a thickness deviation is exactly such a turn: parallel involutes are one involute turned.
         """
         seat = self._model.seats[gear]
         pitch = self._model.gear(seat.gear).gear.angular_pitch
@@ -205,10 +205,10 @@ class Found:
 
     Args:
         distance: (trials, pairs) [mm].
-        points: (trials, pairs, 2, 3) [mm], the nearest ones.
-        back: (trials, pairs, 2, 3) [mm], shift of each of them back onto its flank.
+        points: (trials, pairs, 2, 3) [mm], nearest points on driver and driven.
+        back: (trials, pairs, 2, 3) [mm], shift of each point back onto its flank.
         curvature: (trials, pairs, 2), of the flanks there [1/mm].
-        deep: (trials, pairs), True where the distance means nothing.
+        deep: (trials, pairs), True where the overlap is too deep for the distance to mean anything.
         at_end: (trials, pairs), True where either point is at an end of its flank.
     """
 
@@ -220,12 +220,18 @@ class Found:
     at_end: NDArray[np.bool_]
 
     def gaps(self, offsets: Array, driver_pose: tuple[Array, Array], driver_teeth: Teeth) -> Gaps:
-        """Signed gaps; flanks offset along their normals are parallel, so that the gap is less by that."""
+        """Signed gaps; flanks offset along their normals stay parallel, so that the gap is less by the offsets.
+
+        Args:
+            offsets: of the flanks of driver and driven along their normals (trials, 2) [mm].
+            driver_pose: rotations and origins of the driver's flanks in the world.
+            driver_teeth: the driver's teeth (trials, pairs).
+        """
         safe = np.where(self.deep | np.isnan(self.distance), np.nan, self.distance)
         normal = (self.points[..., 1, :] - self.points[..., 0, :]) / safe[..., None]
         along = (self.back * normal[..., None, :]).sum(axis=-1)
         beside = (self.back**2).sum(axis=-1) - along**2
-        # a flank curves away from beside which the other's edge was put: the driver's against the normal
+        # each flank curves away where the other's edge was moved back beside the line: the driver's against the normal
         away = np.array([-0.5, 0.5]) * beside[..., ::-1] * self.curvature
         moved = self.back + away[..., None] * normal[..., None, :]
         opened = along + away
@@ -246,12 +252,12 @@ class Found:
 
 
 def _alike(shapes: Sequence[Numbers]) -> Iterator[tuple[Numbers, NDArray[np.intp]]]:
-    """Each shape of flanks, and at which places it stands."""
+    """Each distinct shape of flanks, with the indices at which it occurs."""
     places: dict[Numbers, list[int]] = {}
     for place, shape in enumerate(shapes):
         places.setdefault(shape, []).append(place)
-    for shape, own in places.items():
-        yield shape, np.array(own, dtype=np.intp)
+    for shape, indices in places.items():
+        yield shape, np.array(indices, dtype=np.intp)
 
 
 def read_strips(
@@ -260,14 +266,14 @@ def read_strips(
     """Shifts of points (n, 3) back onto their flanks, curvatures there (n,), and flags of flank ends (n,).
 
     Args:
-        strips: with the points that lie on each.
+        strips: with the indices of the points on each.
         scale, triangle, point: as in PulledStrip.
     """
     back, curvature, at_end = np.empty_like(point), np.empty_like(scale), np.empty(scale.shape, dtype=bool)
-    for strip, own in strips:
-        back[own] = strip.put_back(scale[own], triangle[own], point[own])
-        curvature[own] = strip.curvature(scale[own], triangle[own])
-        at_end[own] = strip.at_end(scale[own], point[own])
+    for strip, rows in strips:
+        back[rows] = strip.put_back(scale[rows], triangle[rows], point[rows])
+        curvature[rows] = strip.curvature(scale[rows], triangle[rows])
+        at_end[rows] = strip.at_end(scale[rows], point[rows])
     return back, curvature, at_end
 
 

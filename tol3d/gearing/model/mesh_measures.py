@@ -29,16 +29,16 @@ Reader = Callable[[Mesh], Reading]
 
 
 def default_reading(mesh: Mesh) -> Reading:
-    """All teeth, over the whole face of a cylinder, in the middle section of a cone."""
+    """Reading of all teeth: over the whole face of cylindrical pairs, in the middle section of bevel pairs."""
     return Reading("section", "section") if mesh.pair.arm_spread > 0.0 else Reading()
 
 
 def reader_of(spec: FlankMeasureSpec) -> Reader:
-    """Reading as stated, or the default of the pair. A free turn reads both contacts alike."""
+    """Reading as stated, else the default of the pair; only a normal gap may be read elsewhere than the contact."""
 
     def read(mesh: Mesh) -> Reading:
-        fitting = default_reading(mesh)
-        read_at = spec.read_at or ("mean_section" if fitting.contact == "section" else "face")
+        default = default_reading(mesh)
+        read_at = spec.read_at or ("mean_section" if default.contact == "section" else "face")
         contact: Literal["face", "section"] = "section" if read_at == "mean_section" else "face"
         gap = "section" if read_at == "face_contact" and spec.kind == "normal_backlash" else contact
         return Reading(contact, gap, spec.tooth)
@@ -47,7 +47,7 @@ def reader_of(spec: FlankMeasureSpec) -> Reader:
 
 
 def reader_like(kind: Kind | None) -> Reader:
-    """Reading as for another measure of the same meshes; the default if it reads others, or there is none."""
+    """Reading as by another measure of the mesh; the default if it does not read the mesh, or there is none."""
     known = {} if kind is None else {backlash.mesh: backlash.reading for _, backlash in kind.backlashes}
     return lambda mesh: known.get(mesh.name) or default_reading(mesh)
 
@@ -56,22 +56,22 @@ def refuse_idle_teeth(scene: Scene, place: tuple[str, ...], measure: Measure, mo
     """Refuse to read one tooth at positions at which its flanks are not both in action.
 
     Args:
-        scene, place: what is refused there.
+        scene, place: of the entry that is refused.
         measure: with its readings and positions.
-        model: its meshes.
+        model: with its meshes.
 
     Raises:
-        SceneError: with the number of positions or the share of them all.
+        SceneError: with the number or the fraction of positions at which both are.
     """
-    for said in _idle(measure, model):
+    for tooth in _idle(measure, model):
         raise scene.refuse(
             place,
-            f"expected all, got {said}; elsewhere a neighbour carries, and a tip edge is all that could be read of it",
+            f"expected all, got {tooth}; elsewhere a neighbour carries, and a tip edge is all that could be read of it",
         )
 
 
 def _idle(measure: Measure, model: Model) -> Iterator[str]:
-    """The meshes of which a measure reads a tooth that is out of action somewhere, and how often."""
+    """Teeth that a measure reads and that are out of action at some positions, in words."""
     for _, backlash in measure.kind.backlashes:
         mesh, owner = model.mesh(backlash.mesh), backlash.reading.teeth
         if owner == "all":
@@ -91,7 +91,12 @@ def _idle(measure: Measure, model: Model) -> Iterator[str]:
 
 
 def measure_of(scene: Scene, name: str, model: Model) -> Measure:
-    """A measure of a scene on its model, which is complete but for its measures.
+    """A measure of a scene, with its limits.
+
+    Args:
+        scene: with its entry.
+        name: of the measure.
+        model: of the scene, without measures yet.
 
     Raises:
         SceneError: a shaft or an arm that is not on the train, a swing without a load, one tooth that is out of action.
@@ -112,11 +117,13 @@ def measured(spec: MeasureEntry, scene: Scene, name: str, model: Model) -> Measu
 
     Args:
         spec: its entry.
-        scene, name: where.
-        model: without measures yet.
+        scene: with that entry.
+        name: of the measure.
+        model: of the scene, without measures yet.
 
     Raises:
-        SceneError: it cannot be read there.
+        SceneError: it cannot be read of that mesh or train.
+        TypeError: no function is registered for its kind.
     """
     raise TypeError(f"model/mesh_measures.py has no function for {type(spec).__name__}")
 
@@ -144,8 +151,8 @@ def _positions_of_mesh(spec: BacklashSpec, mesh: Mesh) -> Positions:
     return Positions(spec.over, turns, turns * spec.positions)
 
 
-POSITIONS_A_TOOTH: Final = 16  # the eighth harmonic of the tooth mesh, and its peak to 1e-3 by the parabola
-MOST_IN_ALL: Final = 1_000_000  # positions of a trial: 8 MB of them, and as many contacts
+POSITIONS_A_TOOTH: Final = 16  # resolves the eighth harmonic of tooth mesh, and its peak to 1e-3 by a parabola
+MOST_IN_ALL: Final = 1_000_000  # positions of a trial: 8 MB, and as many contacts
 
 
 @measured.register
@@ -169,12 +176,13 @@ def _(spec: TransmissionErrorSpec, scene: Scene, name: str, model: Model) -> Mea
 
 
 def _rest(spec: TransmissionErrorSpec, mesh: Mesh) -> Backlash:
+    """Angle of the mesh's driven gear with the flank in contact."""
     reading = replace(reader_of(spec)(mesh), flank=spec.flank)
     return Backlash("rest_angle", mesh.name, mesh.driven, reading)
 
 
 def _pushed(mesh: Mesh) -> float:
-    """The sense about its z in which the driver pushes the driven gear: off its right flanks, forwards."""
+    """Sense about its z in which the driven gear is pushed: +1 on its right flanks, -1 on its left ones."""
     return float(mesh.driven_flank)
 
 
@@ -204,7 +212,7 @@ def _mesh_of(element: Link | Parallel, scene: Scene, name: str, model: Model, tr
     """The mesh of a train's link.
 
     Raises:
-        SceneError: it is a link without a known transmission error.
+        SceneError: it is a link of another kind, or load paths in parallel.
     """
     mesh = next((mesh for mesh in model.meshes if mesh.name == element.name), None)
     if mesh is not None:
@@ -221,17 +229,17 @@ def _mesh_of(element: Link | Parallel, scene: Scene, name: str, model: Model, tr
 
 
 def _period(model: Model, kind: TransmissionError) -> int:
-    """Turns of the first shaft until all teeth of a train meet again in the same places."""
+    """Turns of the first shaft after which all teeth of a train meet again in the same places."""
     rates = {name: abs(model.layout.mesh_turn[name].rate) for name in kind.meshes}
     period = least_common([model.mesh(name).pair.long_period_turns / rates[name] for name in kind.meshes])
     return period.numerator
 
 
 def _refuse_coarse(spec: TransmissionErrorSpec, scene: Scene, name: str, model: Model, kind: TransmissionError) -> None:
-    """Refuse positions between which the errors of single teeth would be missed.
+    """Refuse positions so coarse that errors of single teeth would be missed.
 
     Raises:
-        SceneError: with the number that it takes.
+        SceneError: with the number needed.
     """
     for mesh in map(model.mesh, kind.meshes):
         deviating = [

@@ -1,4 +1,4 @@
-"""Presentation of gears in mesh and trains: chains, tables of stages, parts in one world, contacts and gaps."""
+"""Presentation of gears in mesh and of trains: chains, tables of stages, parts in one world, contacts and gaps."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tol3d.study.results.replaying import Replay
     from tol3d.study.trials.simulation import Simulation
 
-DISPLAY: Final = "tol3d.gearing.shown.display"
+DISPLAY: Final = "tol3d.gearing.shown.display"  # the module that seats gears again
 
 
 class GearPresenter(ShowsBuilds):
@@ -37,11 +37,11 @@ class GearPresenter(ShowsBuilds):
         return (*_lazily("train_tables").train_report(summary), *_lazily("shown_train").link_sections(summary))
 
     def measure_rows(self, measure: MeasureSummary, summary: RunSummary) -> "Sequence[FurtherRow]":
-        """Sums of the stages' ends, where a measure is the sum of a train's stages."""
+        """Rows with the sums of the stages' ends, if a measure is the sum of a train's stages."""
         return _lazily("train_tables").sum_rows(measure, summary)  # type: ignore[no-any-return]
 
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
-        """Gears, meshes, trains, measures, and contributors with their coefficients."""
+        """Tables of gears, meshes, trains, measures, and contributors with their coefficients."""
         return _lazily("scene_check").check_blocks(simulation)  # type: ignore[no-any-return]
 
     def shown(self, build: "Replay", label: str, *, magnify: float) -> "Display":
@@ -55,7 +55,7 @@ def _draw_chain(summary: RunSummary, train: str, path: Path) -> None:
 
 
 def _lazily(module: str) -> Any:
-    """A module of this folder, imported when it is needed: a table needs no matplotlib, a picture no model."""
+    """A module of this folder, imported at its first use: a table needs no matplotlib, a picture no model."""
     return import_module(f"{__name__}.{module}")
 
 

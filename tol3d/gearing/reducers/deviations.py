@@ -1,7 +1,7 @@
 """Deviations of a reducer's parts, and the effect of each contributor on them.
 
-Gaps are linear in deviations, so that with the contacts of a trial a turn of the output is a sum of parts, one of each
-contributor: derivatives by each deviation lie in the same arrays as the deviations themselves.
+With given contacts, gaps and so the output's turn are linear in deviations: the turn is a sum over contributors.
+Derivatives by each deviation are kept in the same arrays as the deviations themselves.
 """
 
 from abc import ABC, abstractmethod
@@ -15,7 +15,7 @@ from tol3d.gears.tooth_measures import ToothMeasure
 from tol3d.numerics.arrays import Array, TrialArrays
 
 Along = Callable[[Array], Array]
-"""From a contributor's components (trials, components) to the part of an array that they are."""
+"""From a contributor's components (trials, components) to the values that they add to an array."""
 
 
 @dataclass(frozen=True)
@@ -24,10 +24,10 @@ class Acts:
 
     Args:
         effect: in the words of the reducer's model, such as "pin radius".
-        gear: whose teeth deviate; "" of other parts.
+        gear: whose teeth deviate; "" for other parts.
         factor: multiplier of the deviation, such as 1/cos(alpha) for a thickness along the normals.
-        over: how teeth are measured, where the scene says so.
-        least: smallest physical deviation [mm]: 0 of a clearance.
+        over: measurement by which the scene states a tooth thickness; None if it states the arc.
+        least: smallest physical deviation [mm], 0 for a clearance; None without one.
     """
 
     effect: str
@@ -38,7 +38,7 @@ class Acts:
 
     @property
     def turning(self) -> str | None:
-        """The gear with which the deviation turns: one whose teeth lie off their axis."""
+        """The gear with which the deviation turns, if its teeth lie off their axis; else None."""
         return self.gear if self.gear and self.effect.endswith("offset") else None
 
 
@@ -46,50 +46,51 @@ class Acts:
 class Deviations(TrialArrays, ABC):
     """Deviations of a reducer's parts (trials, ...), or derivatives by each of them.
 
-    A model adds its arrays, and says which one a contributor reaches; `own` is that model.
+    A reducer's model adds its arrays, and tells which one a contributor acts on.
     """
 
     @classmethod
     @abstractmethod
-    def nothing(cls, own: Any, trials: int) -> Self:
+    def nothing(cls, model: Any, trials: int) -> Self:
         """No deviations."""
 
     @abstractmethod
-    def reached(self, own: Any, acts: Acts) -> tuple[Array, Along]:
-        """The array that a contributor reaches, and the part of it that its components are."""
+    def reached(self, model: Any, acts: Acts) -> tuple[Array, Along]:
+        """The array that a contributor acts on, and the map from its components to that array."""
 
     @classmethod
-    def drawn(cls, own: Any, acts: Mapping[str, Acts], drawn: Iterable[tuple[str, Array]], trials: int) -> Self:
+    def drawn(cls, model: Any, acts: Mapping[str, Acts], drawn: Iterable[tuple[str, Array]], trials: int) -> Self:
         """Deviations of trials.
 
         Args:
-            own: the model.
+            model: of the reducer.
             acts: effect of each contributor, by its name; others have none.
             drawn: components (trials, components) of contributors, by name.
             trials: their number.
         """
-        found = cls.nothing(own, trials)
+        deviations = cls.nothing(model, trials)
         for name, components in drawn:
             if name in acts:
-                found.add(own, acts[name], components)
-        return found
+                deviations.add(model, acts[name], components)
+        return deviations
 
-    def add(self, own: Any, acts: Acts, components: Array) -> None:
+    def add(self, model: Any, acts: Acts, components: Array) -> None:
         """Add the effect of a contributor.
 
         Args:
-            own, acts: the model, and the effect.
-            components: of the contributor (trials, components) [mm or rad], of alike parts one after the other.
+            model: of the reducer.
+            acts: the effect.
+            components: of the contributor (trials, components) [mm or rad], part by part for several equal parts.
         """
-        into, along = self.reached(own, acts)
+        into, along = self.reached(model, acts)
         into += acts.factor * along(components)
 
-    def term(self, own: Any, acts: Acts, components: Array) -> Array:
-        """Change due to a contributor (trials,), where this is the change per deviation; see `add`."""
-        rates, along = self.reached(own, acts)
+    def term(self, model: Any, acts: Acts, components: Array) -> Array:
+        """Change due to a contributor (trials,), if these are derivatives by the deviations; see `add`."""
+        rates, along = self.reached(model, acts)
         return np.asarray(acts.factor * (rates * along(components)).reshape(len(rates), -1).sum(axis=1))
 
 
 def shaped(like: Array) -> Along:
-    """Components one after the other, in the form of an array (trials, ...)."""
+    """Map of components to the shape of an array (trials, ...)."""
     return lambda components: components.reshape(len(components), *like.shape[1:])

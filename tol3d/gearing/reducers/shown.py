@@ -1,4 +1,4 @@
-"""Builds, sizes and looks of reducers that tables and pictures of all models share."""
+"""Displays, tooth sizes and views of reducers, common to all kinds of reducers."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -21,10 +21,11 @@ from tol3d.report.presenter import View
 from tol3d.study.system.contributor import Contributor
 
 UP = np.array([0.0, 1.0, 0.0])
-TURN: Final = "turn"
+TURN: Final = "turn"  # a motion of whole turns, which goes on
 SWING: Final = "swing"
 Moves = Mapping[str, tuple[Callable[[Any, int], Sequence[Any]], int]]
-"""By name of a motion: its states from what is shown and their number, and the usual number."""
+"""By name of a motion: a function of the display's `shown` and a number of states that makes these, and the usual
+number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,14 +33,16 @@ class ReducerDisplay(ABC):
     """A build of a reducer; see `tol3d.report.presenter.Display` and `tol3d.report.motion.Movable`.
 
     Args:
-        shown: where its parts stand.
+        label: of the build.
+        shown: poses of its parts, by the reducer's own class.
+        notes: remarks for the user.
     """
 
     words: ClassVar[str]
-    """Its kind, such as "an RV reducer"."""
+    """Kind of reducer, such as "an RV reducer"."""
 
     colours: ClassVar[Mapping[str, str]]
-    """Of marks, by what they are."""
+    """Colours of marks by their kind."""
 
     label: str
     shown: Any
@@ -53,15 +56,15 @@ class ReducerDisplay(ABC):
     @property
     @abstractmethod
     def moves(self) -> Moves:
-        """Its motions; all but TURN go back again."""
+        """Its motions; all but TURN go to and fro."""
 
     @abstractmethod
     def frames(self, states: Sequence[Any], name: str) -> Iterable[Frame]:
-        """Frames of a motion."""
+        """Frames of a motion, one per state."""
 
     @abstractmethod
     def shots(self, states: Sequence[Any], name: str) -> Iterable[Shot]:
-        """Pictures that its frames are made of."""
+        """Views of a motion, of which its frames are composed."""
 
     @cached_property
     def worlds(self) -> tuple[World, ...]:
@@ -70,7 +73,7 @@ class ReducerDisplay(ABC):
 
     @property
     def seen(self) -> World:
-        """The same for pictures."""
+        """The world that pictures show."""
         return self.worlds[0]
 
     @property
@@ -79,21 +82,21 @@ class ReducerDisplay(ABC):
         return tuple(self.moves)
 
     def motion(self, name: str, frames: int | None) -> Motion:
-        """One of them.
+        """A motion by its name, in a number of frames; None for the usual one.
 
         Raises:
             InputError: its parts jam, or do not touch.
         """
-        moved, usual = self.moves[name]
-        states = moved(self.shown, frames or usual)
-        made, shots = tuple(self.frames(states, name)), tuple(self.shots(states, name))
-        return Motion(self.seen, made, shots, self.colours, back=name != TURN)
+        states_of, usual = self.moves[name]
+        states = states_of(self.shown, frames or usual)
+        pictures, shots = tuple(self.frames(states, name)), tuple(self.shots(states, name))
+        return Motion(self.seen, pictures, shots, self.colours, back=name != TURN)
 
     def view(self, close_up: str | None) -> View:
-        """All parts.
+        """View of all parts.
 
         Raises:
-            InputError: a close-up was asked for.
+            InputError: a close-up is requested; reducers have none.
         """
         if close_up is not None:
             raise InputError(f"--mesh: nothing of {self.words} is shown close up, not {close_up[:80]!r}")
@@ -103,22 +106,28 @@ class ReducerDisplay(ABC):
 def gear_sizes(
     gears: Mapping[str, Gear], acts: Mapping[str, Acts], contributors: Sequence[Contributor]
 ) -> Sequence[PageItem]:
-    """Sizes of teeth that shops measure, of gears by their names, with the tolerances of their thickness."""
+    """Table of tooth sizes as shops measure them, with the tolerances of tooth thickness.
+
+    Args:
+        gears: by name.
+        acts: effects of contributors, by name.
+        contributors: of the system.
+    """
     stated = (
-        (act.gear, Thickness(contributor.draw.distribution, act.factor, act.over))
+        (effect.gear, Thickness(contributor.draw.distribution, effect.factor, effect.over))
         for contributor in contributors
-        if (act := acts.get(contributor.name)) is not None and act.effect.endswith("thickness")
+        if (effect := acts.get(contributor.name)) is not None and effect.effect.endswith("thickness")
     )
     return sizes_table(gears, stated)
 
 
 def from_front(world: World) -> Look:
-    """All parts along the common axis."""
+    """View of all parts along the common axis."""
     return around(np.concatenate([body.mesh[0] for body in world.bodies]), np.zeros(3), FRONT, UP)
 
 
 def world_from_middle(link: ReducerLink, world_from_driver: Array) -> Array:
     """Pose (4, 4) of the middle of a reducer in the world of its train."""
-    above = np.eye(4)
-    above[2, 3] = link.height
-    return np.asarray(world_from_driver @ above)
+    driver_from_middle = np.eye(4)
+    driver_from_middle[2, 3] = link.height
+    return np.asarray(world_from_driver @ driver_from_middle)

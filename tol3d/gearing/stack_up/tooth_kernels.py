@@ -1,6 +1,6 @@
-"""The compiled half of tooth_pairs.py: losses by the pairs of flanks of a mesh, row by row.
+"""The compiled half of tooth_pairs.py: loss of backlash by deviating flanks of a mesh, row by row.
 
-Formulas are those of the stack-up; nothing here sees a pose or a kernel of the exact engine.
+Formulas are those of the stack-up, independent of poses and kernels of the exact engine.
 """
 
 import math
@@ -17,22 +17,22 @@ from tol3d.numerics.quick_angles import cos_and_sin
 
 Integers = NDArray[np.int64]
 
-FAR = 0.1  # mm; a pair whose loss is so much smaller than the first one's does not overtake it by iteration
-AGAIN = 2.0  # times the change by an iteration: all further ones together change less
+FAR = 0.1  # mm; a pair whose loss is smaller by more than this is not iterated: it cannot become the largest
+AGAIN = 2.0  # times the change by an iteration is more than all further ones together
 LOOKS = 3  # iterations of pairs; each changes an edge's loss by a twentieth of the previous change
-LEAST_ROLL = 1e-3  # rad; nearer to its base circle an involute is too sharp for a radius of curvature
-BY_NONE, BY_DRIVEN, BY_DRIVER = 0, 1, 2  # which gear turns until a side touches: none, its gap is read
+LEAST_ROLL = 1e-3  # rad; nearer to the base circle the radius of curvature of an involute is too small
+BY_NONE, BY_DRIVEN, BY_DRIVER = 0, 1, 2  # gear that turns until a side touches; none if its gap is read
 
 
 class GearTeeth(NamedTuple):
-    """Flanks of a gear.
+    """Nominal flanks of a gear.
 
     Args:
         base: base radius [mm].
-        form, tip: rolls at which they begin and end [rad].
+        form, tip: rolls at which flanks begin and end [rad].
         face: width of the face [mm].
-        wave_rate, wave_middle: phase of the waves of their form per roll, and the roll at which it is 0 [1; rad]; a
-            rate of 0 is a barrel, see FlankDeviation in effects.py.
+        wave_rate, wave_middle: phase of the form's waves per roll [1], and the roll at which it is 0 [rad]; a rate of
+            0 is a barrel, see FlankDeviation in effects.py.
     """
 
     base: float
@@ -47,10 +47,10 @@ class LineOfContact(NamedTuple):
     """Line of contact of a mesh's pairs.
 
     Args:
-        tangent: length of the tangent of both base circles [mm].
-        start: roll of a tooth of the driver that stands on the line of centres [rad].
-        pitch: angle from tooth to tooth of the driver [rad].
-        half: half of the face that is read [mm]; 0 where a section is.
+        tangent: length of the common tangent of both base circles [mm].
+        start: roll of a driver's tooth at the line of centres [rad].
+        pitch: angular pitch of the driver [rad].
+        half: half width of the face that is read [mm]; 0 for a section.
     """
 
     tangent: float
@@ -60,7 +60,7 @@ class LineOfContact(NamedTuple):
 
 
 class Flank(NamedTuple):
-    """Deviations of a flank [mm]: alike everywhere, along the profile, in its form, along the face."""
+    """Deviations of a flank [mm]: uniform, slope of the profile, its form, and helix along the face."""
 
     uniform: float
     slope: float
@@ -74,26 +74,33 @@ def taken(
     built: tuple[Array, Array, Integers],
     rows: tuple[Integers, Array, Array, Array, Array],
 ) -> Array:
-    """Loss of a flank side by its flanks [mm], (rows,); see `take` for driver, driven and line, and for all others."""
+    """Loss of backlash by the flanks of a side [mm], (rows,).
+
+    Args:
+        mesh: numbers of driver, driven and line; see GearTeeth and LineOfContact.
+        how: `which` of `take`.
+        built: deviations of both gears' flanks, and the trial of each row, as in `take`.
+        rows: first, angles, lean, apart and shifts, as in `take`.
+    """
     first, angles, lean, apart, shifts = (np.require(row, requirements=["C", "W"]) for row in rows)
-    found = np.empty(len(angles))
+    losses = np.empty(len(angles))
     driver, driven, line = GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), LineOfContact(*mesh[2])
-    take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, found)
-    return found
+    take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, losses)
+    return losses
 
 
 @part
 def flank_in(numbers: Array, trial: int, tooth: int, teeth: int, side: int) -> Flank:
-    """A flank of a gear in a trial, of its deviations (trials, coefficients); a gear without any has no columns.
+    """Deviations of a flank in a trial, from `numbers` (trials, coefficients), without columns if none deviates.
 
-    The tooth lies less than a turn off those from 0 to `teeth`.
+    The tooth may be up to a turn below 0 or above `teeth`.
     """
     if numbers.shape[1] == 0:
         return Flank(0.0, 0.0, 0.0, 0.0)
     place = tooth + teeth if tooth < 0 else (tooth - teeth if tooth >= teeth else tooth)
     slot = SHAPES * (2 * place + side)
-    own = numbers[trial]
-    return Flank(own[slot + UNIFORM], own[slot + SLOPE], own[slot + FORM], own[slot + HELIX])
+    row = numbers[trial]
+    return Flank(row[slot + UNIFORM], row[slot + SLOPE], row[slot + FORM], row[slot + HELIX])
 
 
 @part
@@ -118,9 +125,9 @@ def profile_at(gear: GearTeeth, flank: Flank, roll: float) -> tuple[float, float
 
 @part
 def met(gear: GearTeeth, mate: GearTeeth, roll: float, mate_roll: float) -> float:
-    """Roll at which a flank meets a tip edge that has passed its end by d [rad]: rho d further on.
+    """Roll at which a flank meets the mate's tip edge, d [rad] beyond its end: an arc rho d further on.
 
-    From roll t on an arc v of an involute ends at the roll sqrt(t^2 + 2 v/r_b).
+    An arc v of an involute from roll t ends at roll sqrt(t^2 + 2 v/r_b).
     """
     arc, begin = mate.base * mate.tip * (mate_roll - mate.tip), max(roll, 0.0)
     return math.sqrt(begin * begin + 2.0 * arc / gear.base)
@@ -128,30 +135,30 @@ def met(gear: GearTeeth, mate: GearTeeth, roll: float, mate_roll: float) -> floa
 
 @part
 def gone(gear: GearTeeth, mate: GearTeeth, roll: float, tangent: float) -> float:
-    """By how much the tip edge of a gear has left its mate [mm] where its pair lies beyond the path of contact.
+    """Distance of a gear's tip edge from its mate's flank [mm], if its pair lies beyond the path of contact.
 
-    The edge lies r_b (e(d) + t_tip n(d)) off its gear's axis, e the direction to where the tangent of both base circles
-    touches the own one, n along that tangent, turned by d = t - t_tip. Its own tangent to the mate's base circle is L
-    long and touches that th further on, so that the mate's flank is L - r_bm (t_m - th) away.
+    The edge lies r_b (e(d) + t_tip n(d)) off its gear's axis: e points to the contact of the common tangent with the
+    gear's base circle, n along that tangent, both turned by d = t - t_tip. The tangent from the edge to the mate's base
+    circle has length L and touches it th further on, so that the mate's flank is L - r_bm (t_m - th) away.
     """
-    beyond, own, other = roll - gear.tip, gear.base, mate.base
+    beyond, base, mate_base = roll - gear.tip, gear.base, mate.base
     cos, sin = cos_and_sin(beyond)
-    x = own + other - own * (cos - gear.tip * sin)
-    y = tangent - own * (sin + gear.tip * cos)
-    length = math.sqrt(max(x * x + y * y - other * other, 0.0))
-    further = math.atan2(y * other - x * length, x * other + y * length)
-    return length - (tangent - own * (gear.tip + beyond)) + other * further
+    x = base + mate_base - base * (cos - gear.tip * sin)
+    y = tangent - base * (sin + gear.tip * cos)
+    length = math.sqrt(max(x * x + y * y - mate_base * mate_base, 0.0))
+    further = math.atan2(y * mate_base - x * length, x * mate_base + y * length)
+    return length - (tangent - base * (gear.tip + beyond)) + mate_base * further
 
 
 @part
 def aside(
     driver: GearTeeth, driven: GearTeeth, slope: float, mate_slope: float, roll: float, mate_roll: float
 ) -> float:
-    """Additional loss by a pair that touches beside the line of action, of flanks that slope there [mm; mm/rad].
+    """Additional loss by a pair whose flanks slope and so touch beside the line of action [mm]; slopes [mm/rad].
 
     As the driver's point rolls on by dt, the foot on the mate rolls back by rho_1/rho_2 dt, and both flanks curve away
-    by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2): of a slope g they touch g/b on and take g^2/(2 b) more, or less where
-    a flank ends before. Beyond the path of contact both edges have come from where they would have touched.
+    by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2): with a slope g they touch g/b further on and lose g^2/(2 b) more, or
+    less if a flank ends before. Beyond the path of contact the way of an edge beyond its end counts, too.
     """
     if slope == 0.0 and mate_slope == 0.0:
         return 0.0
@@ -179,7 +186,7 @@ def taken_by(
     rolls: tuple[float, float],
     lean: float,
 ) -> float:
-    """Loss by a pair [mm] that touches at some rolls [rad], less the distance of its edges from their mates."""
+    """Loss by a pair at some rolls [rad], less the distance of its edges from their mates [mm]."""
     roll, mate_roll = rolls
     out, slope = profile_at(driver, flank, roll)
     mate_out, mate_slope = profile_at(driven, mating, mate_roll)
@@ -197,7 +204,7 @@ def taken_by(
 
 @part
 def changes(driver: GearTeeth, driven: GearTeeth, flank: Flank, mating: Flank, rolls: tuple[float, float]) -> bool:
-    """True if a pair's loss depends on the roll: it slopes, or touches at an edge."""
+    """True if a pair's loss depends on its rolls: a flank has a slope or a form, or an edge touches."""
     if flank.slope != 0.0 or flank.form != 0.0 or mating.slope != 0.0 or mating.form != 0.0:
         return True
     return rolls[0] > driver.tip or rolls[1] > driven.tip
@@ -215,7 +222,7 @@ def look_at(
     lean: float,
     took: float,
 ) -> tuple[float, bool]:
-    """Loss by a pair [mm] after the turning gear has turned by the loss `took`, and a flag for another iteration.
+    """Loss by a pair [mm] after the turning gear has turned by the loss `took`; and True if another turn changes it.
 
     Args:
         driver, driven, line, which: as in `take`.
@@ -233,8 +240,8 @@ def look_at(
         if which[1] == BY_DRIVER:
             roll += (apart - took) / driver.base
     rolls = (roll, mate_roll)
-    now = taken_by(driver, driven, line, pair[0], pair[1], rolls, lean)
-    return now, changes(driver, driven, pair[0], pair[1], rolls)
+    loss = taken_by(driver, driven, line, pair[0], pair[1], rolls, lean)
+    return loss, changes(driver, driven, pair[0], pair[1], rolls)
 
 
 @kernel(
@@ -258,44 +265,46 @@ def take(
     lean: Array,
     apart: Array,
     shifts: Array,
-    found: Array,
+    losses: Array,
 ) -> None:
-    """Find the loss of a flank side by its flanks.
+    """Compute the loss of backlash by the flanks of a side.
 
     Args:
         driver, driven, line: the mesh.
-        which: side, 1 where the driver's right flanks touch, -1 where its left ones do; which gear turns, see BY_NONE;
-            how many pairs may touch; by how many teeth tooth 0 of driver and driven stands ahead of the one that the
-            mesh counts as such; how many teeth they have.
+        which: side, 1 if the driver's right flanks touch, -1 if its left ones do; the gear that turns, see BY_NONE;
+            number of pairs that may touch; teeth by which tooth 0 of driver, and of driven, is ahead of the mesh's
+            tooth 0; numbers of teeth of driver and driven.
         numbers, mating_numbers: deviations of the flanks of driver and driven, (trials, teeth x 2 x SHAPES) [mm], of
-            each tooth right flanks first; no columns where none deviates.
-        trial: (rows,), that of each row.
+            each tooth right flanks first; no columns if none deviates.
+        trial: (rows,), trial of each row.
         first: (rows,), the driver's first tooth that may touch, as the mesh counts; the others follow against `side`.
         angles: (rows,), of the driver [rad].
         lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm].
-        apart: (rows,), by which the side stands open before [mm]; no rows where it touches already.
-        shifts: (rows, 2), by how much more roll a driver's tooth has on the line of centres [rad], and how much longer
-            the tangent of both base circles is [mm]; no rows where axes are at their nominal places.
-        found: (rows,) [mm], written; positive where the side touches earlier.
+        apart: (rows,), gap of the side before [mm]; no rows if it touches already.
+        shifts: (rows, 2), additional roll of a driver's tooth at the line of centres [rad], and additional length of
+            the common tangent [mm]; no rows if axes are at their nominal places.
+        losses: (rows,) [mm], written; positive where the side touches earlier.
     """
     side, count, right = which[0], which[2], 0 if which[0] == 1 else 1
     took, moved, again = np.empty(count), np.empty(count), np.empty(count, dtype=np.bool_)
-    for row in range(len(found)):
-        own, open_by, most = trial[row], apart[row] if len(apart) else 0.0, 0.0
+    for row in range(len(losses)):
+        number, open_by, most = trial[row], apart[row] if len(apart) else 0.0, 0.0
         place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
         again[:] = True
         took[:] = 0.0
-        here = line
+        shifted = line
         if len(shifts):
-            here = LineOfContact(line.tangent + shifts[row, 1], line.start + shifts[row, 0], line.pitch, line.half)
+            shifted = LineOfContact(line.tangent + shifts[row, 1], line.start + shifts[row, 0], line.pitch, line.half)
         for _ in range(LOOKS):  # a gear turned by its pair's loss is at another roll
             for k in range(count):
                 if again[k]:
-                    flank = flank_in(numbers, own, place - side * k, which[5], right)
-                    mating = flank_in(mating_numbers, own, mate_place + side * k, which[6], right)
+                    flank = flank_in(numbers, number, place - side * k, which[5], right)
+                    mating = flank_in(mating_numbers, number, mate_place + side * k, which[6], right)
                     azimuth = angles[row] + (first[row] - side * k) * line.pitch
                     pair, before = (flank, mating), took[k]
-                    took[k], again[k] = look_at(driver, driven, here, which, pair, azimuth, open_by, lean[own], before)
+                    took[k], again[k] = look_at(
+                        driver, driven, shifted, which, pair, azimuth, open_by, lean[number], before
+                    )
                     moved[k] = min(AGAIN * abs(took[k] - before), FAR)
             most, looks = took.max(), False
             for k in range(count):
@@ -303,4 +312,4 @@ def take(
                 looks = looks or again[k]
             if not looks:
                 break
-        found[row] = most
+        losses[row] = most

@@ -1,4 +1,4 @@
-"""Frames and scales of charts as SVG: the width that a chart is drawn for, and places of values on it."""
+"""Frames and scales of charts as SVG: the width for which a chart is drawn, and places of values on it."""
 
 import math
 from collections.abc import Iterator
@@ -12,13 +12,14 @@ from tol3d.report.ticks import Ticks, decades, ticks_of
 
 @dataclass(frozen=True)
 class Frame:
-    """Width that a chart is drawn for, in its own unit: letters of 11 are readable from there on.
+    """Width for which a chart is drawn, in SVG units: on a page at least that wide letters of 11 are readable.
 
     Args:
         name: CSS class of charts of this width.
         width: of the chart.
         left, right: margins of its values.
-        names: width of the names at its left, where it has names; `letters` of them find room.
+        names: left margin instead, of charts whose rows have names.
+        letters: most letters of a name that fit it.
     """
 
     name: str
@@ -30,17 +31,23 @@ class Frame:
 
 
 TICK: Final = 90.0
-"""Length of an axis between two ticks, at least, so that their words stand apart."""
+"""Least distance of two ticks of an axis, so that their words stand apart."""
 LETTER: Final = 6.6
-"""Width of a letter, about."""
+"""Mean width of a letter."""
 WIDE: Final = Frame("wide-chart", 720.0, 64.0, 16.0, 230.0, 38)
 NARROW: Final = Frame("narrow-chart", 324.0, 54.0, 6.0, 142.0, 21)
-"""A page of 390 pixels shows it in its own size, beside a bar that scrolls."""
+"""Fits a page of 390 pixels with its scroll bar, without scaling."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """Values of an axis on places from `start` to `end` of a chart, with `most` ticks, about."""
+    """Map of an axis to places of a chart.
+
+    Args:
+        axis: with its ends.
+        start, end: places of its lower and upper end.
+        most: about the number of ticks.
+    """
 
     axis: Axis
     start: float
@@ -54,32 +61,32 @@ class Scale:
         return self.start + (value - low) / (high - low) * (self.end - self.start)
 
     def within(self, value: float) -> float:
-        """Place of a value, of one beyond the axis the end of it."""
+        """Place of a value, or of the axis' end that it lies beyond."""
         return self(min(max(value, self.axis.low), self.axis.high))
 
     @property
     def ticks(self) -> Ticks:
-        """Values within the span with their words."""
+        """Values of the ticks with their words."""
         axis = self.axis
         if not axis.ticks:
             return []
         return decades(axis.low, axis.high) if axis.log else ticks_of(axis.low, axis.high, axis.unit, self.most)
 
     def grid_below(self, top: float, bottom: float) -> Iterator[Markup]:
-        """Upright lines at its ticks over a panel, and the panel's lower edge."""
+        """Upright grid lines at its ticks over a panel."""
         for value, _ in self.ticks:
             yield tag("path", d=f"M{self(value):.1f} {top:.1f}V{bottom:.1f}", class_="grid")
 
     def words_below(self, bottom: float) -> Iterator[Markup]:
-        """Its line, the words of its ticks and its label below the last panel."""
+        """A horizontal axis below the last panel: its line, the words of its ticks, and its label."""
         for value, words in self.ticks:
             yield tag("text", words, x=self(value), y=bottom + 15, text_anchor="middle", class_="tick")
         yield tag("path", d=f"M{self.start:.1f} {bottom:.1f}H{self.end:.1f}", class_="frame")
-        middle, room = (self.start + self.end) / 2, int(2 * (self.end - self.start) / LETTER / 2)
+        middle, room = (self.start + self.end) / 2, int((self.end - self.start) / LETTER)
         yield tag("text", self.axis.words(room), x=middle, y=bottom + 33, text_anchor="middle", class_="label")
 
     def beside(self, left: float, right: float) -> Iterator[Markup]:
-        """A vertical axis at the left of a panel."""
+        """A vertical axis at the left of a panel: grid lines, the words of its ticks, and its label."""
         for value, words in self.ticks:
             y = self(value)
             yield tag("path", d=f"M{left:.1f} {y:.1f}H{right:.1f}", class_="grid")

@@ -1,4 +1,4 @@
-"""Published figures of more than one measure: yields, correlations, numbers of trials, durations."""
+"""Published figures beside those of single measures: yields, correlations, numbers of trials, durations."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any, Self
@@ -22,31 +22,38 @@ Problem = tuple[KeyPath, str]
 
 
 class PublishedFigures(Strict):
-    """Keys of a published column beside the measures: sections of summary.json, by its keys, methods left out.
+    """Keys of a published column beside the measures: sections of summary.json by the same keys, without methods.
 
-    A mechanism declares a subclass with the sections that it adds: fields of plain numbers, of quantities (lengths um,
-    angles arcmin in summary.json), of `Strict` classes and of mappings and lists of these; none is required.
+    A mechanism declares a subclass with its sections: fields of plain numbers, of quantities (in summary.json lengths
+    are in um, angles in arcmin), of `Strict` classes, and of mappings and lists of these; none is required.
     """
 
     def problems(self, scene: Any) -> Iterator[Problem]:
-        """Conflicts with the rest of the scene, such as names that it does not have: place below the column."""
+        """Conflicts with the rest of the scene, such as unknown names: place within the column, and message."""
         return iter(())
 
     @staticmethod
     def strangers(section: str, names: Iterable[str], known: Collection[str], expected: str) -> Iterator[Problem]:
-        """Names of a section that a scene does not have."""
+        """Problems of names in a section that the scene does not have.
+
+        Args:
+            section: its key.
+            names: those in it.
+            known: those of the scene.
+            expected: what a name should be, for the message.
+        """
         for name in names:
             if name not in known:
                 yield (section, name), f"expected {expected}, got {name!r}{hint(name, known)}"
 
 
 class PublishedYield(Strict):
-    """The share of trials within all limits."""
+    """Fraction of trials within all limits."""
 
-    trials: Count | None = Field(default=None, description="all of them, failed ones too")
-    within: Count | None = Field(default=None, description="trials within all limits")
-    yield_ppm: Ppm | None = Field(default=None, description="share of all trials [ppm]")
-    yield_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence [ppm]")
+    trials: Count | None = Field(default=None, description="number of trials, failed ones included")
+    within: Count | None = Field(default=None, description="number of trials within all limits")
+    yield_ppm: Ppm | None = Field(default=None, description="fraction of all trials within all limits [ppm]")
+    yield_ppm_95: PpmRange | None = Field(default=None, description="95 % confidence interval of that fraction [ppm]")
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
@@ -67,26 +74,27 @@ class PublishedJoint(Strict):
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
         for first, others in self.correlations.items():
-            for second, own in others.items():
+            for second, correlation in others.items():
                 place = f"correlations.{first}.{second}"
                 if first == second:
                     raise refused(f"correlations.{first}", "another measure", repr(str(second)))
                 if first in self.correlations.get(second, {}):
                     raise refused(place, "each pair once", "it both ways")
-                if isinstance(own, PublishedCorrelation):
-                    known = [value for value in (own.r_low_95, own.r, own.r_high_95) if value is not None]
-                    if known != sorted(known):
-                        raise refused(place, "r_low_95, r and r_high_95 in rising order", str(known))
+                if isinstance(correlation, PublishedCorrelation):
+                    bounds = correlation.r_low_95, correlation.r, correlation.r_high_95
+                    values = [value for value in bounds if value is not None]
+                    if values != sorted(values):
+                        raise refused(place, "r_low_95, r and r_high_95 in rising order", str(values))
         return self
 
 
 class PublishedStudy(Strict):
-    """The study of others."""
+    """Settings of the published study."""
 
     trials: Count | None = Field(default=None, description="number of trials")
     seed: Count | None = Field(default=None, description="seed of the draws")
     replicates: Count | None = Field(default=None, description="number of replicates")
-    witness: Count | None = Field(default=None, description="trials that another engine measured again")
+    witness: Count | None = Field(default=None, description="number of trials measured again by another engine")
 
 
 class PublishedTiming(Strict):
@@ -95,14 +103,14 @@ class PublishedTiming(Strict):
     setup_s: NotNegative | None = Field(default=None, description="time to set up [s]")
     simulate_s: NotNegative | None = Field(default=None, description="time of the trials [s]")
     first_block_s: NotNegative | None = Field(default=None, description="time of the first block [s]")
-    trials_per_s: NotNegative | None = Field(default=None, description="trials a second")
-    resumed_trials: Count | None = Field(default=None, description="trials that were there already")
+    trials_per_s: NotNegative | None = Field(default=None, description="trials per second")
+    resumed_trials: Count | None = Field(default=None, description="number of trials from a resumed run")
     workers: Count | None = Field(default=None, description="number of processes")
-    peak_memory_mb: NotNegative | None = Field(default=None, description="most memory at once [MB]")
+    peak_memory_mb: NotNegative | None = Field(default=None, description="peak memory [MB]")
 
 
 class PublishedWhole(PublishedFigures):
-    """Published figures that any run may have."""
+    """Published figures that runs of every mechanism have."""
 
     seed: Count | None = Field(default=None, description="seed of the draws")
     trials: Count | None = Field(default=None, description="number of trials")
@@ -113,7 +121,7 @@ class PublishedWhole(PublishedFigures):
     timing: PublishedTiming | None = Field(default=None, description="durations")
 
     def problems(self, scene: Any) -> Iterator[Problem]:
-        """Correlations of unknown measures, or of a curve."""
+        """Correlations of unknown measures, and of measures that take a curve."""
         correlations = self.joint.correlations if self.joint else {}
         for first, others in correlations.items():
             path: KeyPath = ("joint", "correlations", first)

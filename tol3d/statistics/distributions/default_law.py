@@ -1,4 +1,4 @@
-"""The law of a deviation of which a drawing says the limits alone."""
+"""Default law of a deviation for which a drawing states limits alone."""
 
 from abc import ABC, abstractmethod
 from typing import Annotated, Literal
@@ -16,7 +16,7 @@ from tol3d.units import Quantity
 
 
 class LimitLaw(Strict, ABC):
-    """A kind of law that limits decide, about their middle."""
+    """A kind of law that is determined by limits, symmetric about their middle."""
 
     kind: str
 
@@ -26,10 +26,10 @@ class LimitLaw(Strict, ABC):
 
 
 class NormalBetween(LimitLaw):
-    """Normal, with its limits at a number of sigmas."""
+    """Normal, with its limits at a number of sigmas; not cut at them."""
 
     kind: Literal["normal"]
-    sigmas: float = Field(default=3.0, gt=0.0, description="of which the limits are that far from the middle")
+    sigmas: float = Field(default=3.0, gt=0.0, description="standard deviations from the middle to either limit")
 
     @override
     def between(self, lower: Quantity, upper: Quantity) -> DistributionSpec:
@@ -40,7 +40,7 @@ class TruncatedNormalBetween(LimitLaw):
     """Normal, cut at its limits."""
 
     kind: Literal["truncated_normal"]
-    sigmas: float = Field(default=3.0, gt=0.0, description="of which the limits are that far from the middle")
+    sigmas: float = Field(default=3.0, gt=0.0, description="standard deviations from the middle to either limit")
 
     @override
     def between(self, lower: Quantity, upper: Quantity) -> DistributionSpec:
@@ -51,7 +51,7 @@ class TruncatedNormalBetween(LimitLaw):
 
 
 class UniformBetween(LimitLaw):
-    """Equally likely everywhere between its limits."""
+    """Equally likely everywhere between the limits."""
 
     kind: Literal["uniform"]
 
@@ -61,7 +61,7 @@ class UniformBetween(LimitLaw):
 
 
 class TriangularBetween(LimitLaw):
-    """Most likely in the middle of its limits."""
+    """Most likely in the middle of the limits, with density 0 at them."""
 
     kind: Literal["triangular"]
 

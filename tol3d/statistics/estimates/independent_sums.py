@@ -1,7 +1,7 @@
-"""Contributors of very many that a target's variance comes from: by the covariance of each with it.
+"""Variance shares of very many independent contributors, by the covariance of each with the target.
 
-Products of all pairs of features go with the square of their number. Where contributors are independent those between
-them are chance, and are left out: each cluster of contributors is regressed on by itself.
+The products of all pairs of features grow with the square of their number. Between independent contributors they are
+chance, and are left out: the target is regressed on each cluster of contributors alone.
 """
 
 import math
@@ -25,7 +25,7 @@ class Products(Protocol):
         ...
 
     def pair_products(self, rows: Array, first: NDArray[np.intp], second: NDArray[np.intp]) -> Array:
-        """Products of pairs of rows (rows, trials): (pairs,)."""
+        """Sums of products of pairs of rows (rows, trials): (pairs,)."""
         ...
 
 
@@ -33,13 +33,15 @@ class Products(Protocol):
 class IndependentSums:
     """Count, means and co-moments of features with their target, and with each other within clusters.
 
+    Co-moments are sums of products of deviations from the means.
+
     Args:
-        clusters: how the features are cut.
+        clusters: of the features.
         count: number of trials.
         means: (features + 1,), the target last.
-        within: (pairs,), of the pairs of `clusters`.
-        across: (features,), of each feature with the target.
-        square: of the target.
+        within: (pairs,), co-moments of the pairs of `clusters`.
+        across: (features,), co-moment of each feature with the target.
+        square: co-moment of the target with itself.
     """
 
     clusters: Clusters
@@ -61,40 +63,40 @@ class IndependentSums:
         """The sums of one block for several targets.
 
         Args:
-            features: (features, trials), no nan.
-            targets: (targets, trials), no nan.
+            features: (features, trials), without NaN.
+            targets: (targets, trials), without NaN.
             clusters: of all features.
-            picked: those that each target has.
-            products: function that sums them.
+            picked: clusters and features of each target.
+            products: functions that sum products over trials.
         """
         count = features.shape[1]
         if count == 0:
-            return tuple(cls._none(own.clusters) for own in picked)
+            return tuple(cls._none(part.clusters) for part in picked)
         rows, means = _centred(features)
-        aims, target_means = _centred(targets)
-        across = products.cross_products(rows, aims)
+        target_rows, target_means = _centred(targets)
+        across = products.cross_products(rows, target_rows)
         within = products.pair_products(rows, *clusters.pairs)
-        squares = np.einsum("ij,ij->i", aims, aims)
+        squares = np.einsum("ij,ij->i", target_rows, target_rows)
         return tuple(
             cls(
-                own.clusters,
+                part.clusters,
                 count,
-                np.append(means[own.rows], target_means[k]),
-                within[own.pairs],
-                across[own.rows, k],
+                np.append(means[part.rows], target_means[k]),
+                within[part.pairs],
+                across[part.rows, k],
                 float(squares[k]),
             )
-            for k, own in enumerate(picked)
+            for k, part in enumerate(picked)
         )
 
     @classmethod
     def _none(cls, clusters: Clusters) -> Self:
-        """Sums over no trial."""
+        """Sums over no trials."""
         size = clusters.features
         return cls(clusters, 0, np.zeros(size + 1), np.zeros(len(clusters.pairs[0])), np.zeros(size), 0.0)
 
     def merge(self, other: Self) -> Self:
-        """The sums of both blocks together; Pebay, SAND2008-6212, 2008 (covariances)."""
+        """The sums of two blocks together. Source: Pebay, SAND2008-6212, 2008 (covariances)."""
         if self.count == 0 or other.count == 0:
             return other if self.count == 0 else self
         count = self.count + other.count
@@ -117,16 +119,16 @@ class IndependentSums:
 
     @property
     def target_sigma(self) -> float:
-        """Standard deviation of the target."""
+        """Standard deviation of the target, with the number of trials as divisor."""
         return math.sqrt(self.square / self.count)
 
     @property
     def is_constant(self) -> bool:
-        """True if the target does not vary, but for rounding."""
+        """True if the target varies by rounding alone."""
         return self.square == 0.0 or self.target_sigma <= CONSTANT_RTOL * abs(self.target_mean)
 
     def fits(self) -> Iterator["ClusterFit"]:
-        """The least-squares fit of the target on each cluster alone, those of a pattern together."""
+        """Least-squares fits of the target on each cluster alone, one result per pattern of clusters."""
         sigma = np.sqrt(np.maximum(self._squares, 0.0) / self.count)
         scale = feature_sigmas(sigma, self.means[:-1])
         for pattern in self.clusters.patterns:
@@ -134,14 +136,16 @@ class IndependentSums:
 
     @property
     def _squares(self) -> Array:
+        """Co-moment of each feature with itself (features,)."""
         squares = np.zeros(self.clusters.features)
         for pattern in self.clusters.patterns:
             squares[pattern.columns] = np.diagonal(self.within[pattern.pairs], axis1=1, axis2=2)
         return squares
 
     def _fit(self, pattern: Pattern, scale: Array) -> "ClusterFit":
-        per = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0.0)
-        both = per[:, :, None] * per[:, None, :]
+        """Fits on the clusters of a pattern; `scale` (clusters, features) of features, 0 of those that are constant."""
+        per_scale = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0.0)
+        both = per_scale[:, :, None] * per_scale[:, None, :]
         comoments, across = self.within[pattern.pairs], self.across[pattern.columns]
         values, vectors = np.linalg.eigh(comoments * both / self.count)
         kept = values > RANK_RTOL * np.maximum(values[:, -1:], 0.0)
@@ -166,12 +170,12 @@ class ClusterFit:
     """Least-squares fits of a target on clusters of one pattern, each alone.
 
     Args:
-        pattern: which clusters.
+        pattern: of the clusters.
         coefficients: (clusters, features of a cluster), unit of the target per unit of the feature.
         covariance: of the coefficients (clusters, features, features).
-        spread: covariance of the features.
-        explained: (clusters, features), co-moments of the target with the part that each feature explains.
-        unknowns: (clusters,), their number in the fit.
+        spread: covariance of the features (clusters, features, features).
+        explained: (clusters, features), co-moment of the target with coefficient times feature.
+        unknowns: (clusters,), number of independent features in the fit.
     """
 
     pattern: Pattern
@@ -183,15 +187,16 @@ class ClusterFit:
 
 
 def independent_shares(sums: IndependentSums) -> tuple[Array, Array, float]:
-    """The share of the target's variance that each part explains, its standard error, and the unexplained share.
+    """Fraction of the target's variance explained by each part, its standard error, and the unexplained fraction.
 
-    A cluster's share is r^2 of its own fit less what chance adds to it, (1 - r^2) q / (n - 1 - q) of q unknowns
-    (Ezekiel's adjustment), so that no bias adds up over very many parts; by chance it may lie below 0. The error is
-    that of a squared correlation, 2 r (1 - r^2) / sqrt(n), of a part of the cluster so much of it; of one by chance
-    alone, its own size.
+    A cluster's share is r^2 of its own fit less the part expected by chance, (1 - r^2) q / (n - 1 - q) for q unknowns
+    (Ezekiel's adjustment), so that no bias adds up over very many parts; it may be below 0 by chance. Its error is that
+    of a squared correlation, 2 r (1 - r^2) / sqrt(n), combined with the part by chance; a part of a cluster has its
+    proportion of both.
 
     Returns:
-        Both (parts,), fractions; all 0 of a constant target, nan with no more trials than a cluster has unknowns.
+        Shares and errors (parts,) and the unexplained fraction; all 0 for a constant target, NaN unless the trials
+        exceed the features of the largest cluster by two.
     """
     parts = len(sums.clusters.sizes)
     share, error = np.zeros(parts), np.zeros(parts)
@@ -203,18 +208,18 @@ def independent_shares(sums: IndependentSums) -> tuple[Array, Array, float]:
     for fit in sums.fits():
         square = np.clip(fit.explained.sum(axis=1) / sums.square, 0.0, 1.0)
         chance = (1.0 - square) * fit.unknowns / (sums.count - 1 - fit.unknowns)
-        whole = 2.0 * np.sqrt(square) * (1.0 - square) / math.sqrt(sums.count)
-        whole = np.where(fit.unknowns > 0, np.hypot(whole, chance), 0.0)
+        sampling = 2.0 * np.sqrt(square) * (1.0 - square) / math.sqrt(sums.count)
+        cluster_error = np.where(fit.unknowns > 0, np.hypot(sampling, chance), 0.0)
         for which, columns in fit.pattern.within():
             part = fit.explained[:, columns].sum(axis=1) / sums.square
-            of_all = np.divide(part, square, out=np.full(len(part), 1.0), where=square > 0.0)
-            share[which] = part - chance * of_all
-            error[which] = whole * np.maximum(np.abs(of_all), 1.0 / len(fit.pattern.sizes))
+            proportion = np.divide(part, square, out=np.full(len(part), 1.0), where=square > 0.0)
+            share[which] = part - chance * proportion
+            error[which] = cluster_error * np.maximum(np.abs(proportion), 1.0 / len(fit.pattern.sizes))
     return share, error, max(1.0 - float(share.sum()), 0.0)
 
 
 def _centred(rows: Array) -> tuple[Array, Array]:
-    """Rows about their means, and the means; from the first value, so that a constant row has no spread at all."""
+    """Rows about their means, and the means; from the first value, so that constant rows have no spread at all."""
     first = rows[:, 0].copy()
     shifted = rows - first[:, None]
     means = np.mean(shifted, axis=1)

@@ -1,4 +1,4 @@
-"""Callbacks of a run while it goes on."""
+"""Callbacks of a run in progress."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -8,17 +8,20 @@ from typing import Any
 from tol3d.study.execution.folding import Progress
 
 Activity = Callable[[str], None]
+"""Gets what a run is doing, in words."""
 Finisher = Callable[[Path, Mapping[str, Any]], None]
+"""Gets the run's folder and its summary."""
 
 
 @dataclass(frozen=True)
 class Watch:
-    """Callbacks.
+    """Callbacks of a run; by default each does nothing.
 
     Args:
         activity: callback for the current activity, in words.
         progress: callback for the number of trials finished since its last call.
-        finisher: adds pictures to the folder before the run is put in its place.
+        finisher: callback that adds files, such as pictures, to the run's folder before it is put in its place; it gets
+            the folder and the summary.
     """
 
     activity: Activity = lambda text: None
@@ -27,3 +30,4 @@ class Watch:
 
 
 UNWATCHED = Watch()
+"""No callbacks."""

@@ -1,4 +1,4 @@
-"""Versions of packages, and the kind of processor, which decide a result's last bit."""
+"""Versions of packages and the kind of processor, on which the last bits of results depend."""
 
 import importlib.metadata
 from collections.abc import Sequence
@@ -10,28 +10,35 @@ from tol3d.numerics.processor import processor, unlike
 VERSIONS_OF = ("tol3d", "numpy", "scipy", "numba", "llvmlite")
 
 Versions = tuple[tuple[str, str], ...]
+"""Names with their versions."""
 
 
 @cache
 def installed_versions(requires: Sequence[str] = ()) -> Versions:
-    """Versions of this machine, of tol3d's own packages and of those that a system requires besides."""
+    """Versions of tol3d's packages and of those that a system requires besides, and the kind of processor."""
     packages = {name: importlib.metadata.version(name) for name in (*VERSIONS_OF, *requires)}
     return tuple({**packages, **processor()}.items())
 
 
 @cache
 def refuse_other_versions(versions: Versions, requires: Sequence[str] = ()) -> None:
-    """Refuse to work for a run whose results might differ in the last bit.
+    """Refuse to work on a run whose results might differ in the last bit here.
+
+    Args:
+        versions: those of the run.
+        requires: packages that its system requires besides.
 
     Raises:
         RunError: a package has another version here, or the processor is of another kind.
     """
-    asked, own = dict(versions), dict(installed_versions(requires))
+    of_run, installed = dict(versions), dict(installed_versions(requires))
     pairs = {
-        name: unlike(own.get(name), asked.get(name)) for name in {**asked, **own} if own.get(name) != asked.get(name)
+        name: unlike(installed.get(name), of_run.get(name))
+        for name in {**of_run, **installed}
+        if installed.get(name) != of_run.get(name)
     }
     if pairs:
-        other = "; ".join(f"{name} {here} instead of {there}" for name, (here, there) in pairs.items())
+        other = "; ".join(f"{name} {present} instead of {wanted}" for name, (present, wanted) in pairs.items())
         raise RunError(
             f"a worker has {other}: results could differ in the last bit; install the same packages there, and start "
             "the run on a machine with the workers' kind of processor"

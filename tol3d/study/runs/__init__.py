@@ -1,4 +1,4 @@
-"""A run on disk: its blocks of trials, their storage, and the conditions of replacing it."""
+"""A run on disk: its blocks of trials, summary, storage, and the conditions for replacing it."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""Files that are whole or not there, also after a kill or a power cut; and whose fault it is when they are not."""
+"""Atomic writes: after a kill or a power cut a file is whole or not there; and the cause of a failed write."""
 
 import os
 from collections.abc import Callable, Iterator, Mapping
@@ -8,23 +8,23 @@ from pathlib import Path
 
 from tol3d.errors import NO_SPACE, InputError, unwritable
 
-UNFINISHED = ".writing"
+UNFINISHED = ".writing"  # ends the names of files that are being written
 
 
 def write_whole(path: Path, content: bytes | memoryview) -> None:
-    """A file of this content, see `write_by`."""
+    """Write a file with this content atomically; see `write_by`."""
     write_by(path, lambda stream: stream.write(content))
 
 
 def write_by(path: Path, write: Callable[[BufferedRandom], object]) -> None:
-    """Write beside the file's place, bring it to the disk and rename it there; a failure leaves nothing behind.
+    """Write a file atomically: beside its place, synchronised to disk, then renamed; a failure leaves nothing behind.
 
     Args:
         path: the file.
-        write: writes its content to a stream that it may read again.
+        write: writes its content to a stream, which it may also read.
 
     Raises:
-        OSError: it names the file.
+        OSError: the file cannot be written; the error names it.
     """
     beside = path.with_name(path.name + UNFINISHED)
     try:
@@ -34,13 +34,13 @@ def write_by(path: Path, write: Callable[[BufferedRandom], object]) -> None:
                 stream.flush()
                 os.fsync(stream.fileno())
             beside.replace(path)
-    except BaseException:  # one who interrupts it too
+    except BaseException:  # an interrupt, too
         beside.unlink(missing_ok=True)
         raise
 
 
 def write_texts(texts: Mapping[str, str], folder: Path) -> tuple[Path, ...]:
-    """Write files into a folder, which is made if it is not there.
+    """Write texts by file name into a folder, which is made if missing; returns the paths.
 
     Raises:
         InputError: they cannot be written.
@@ -55,10 +55,10 @@ def write_texts(texts: Mapping[str, str], folder: Path) -> tuple[Path, ...]:
 
 
 def made_folder(folder: Path) -> Path:
-    """The folder, made if it is not there.
+    """The folder, made if missing.
 
     Raises:
-        InputError: it cannot be, or is a file.
+        InputError: it cannot be made, or is a file.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -71,7 +71,7 @@ def made_folder(folder: Path) -> Path:
 
 @contextmanager
 def named_in_errors(path: Path) -> Iterator[None]:
-    """Within it an OSError names the file that is written: the system's own may name none, or one beside it."""
+    """Context in which an OSError names the file being written; the system's own names none, or the one beside it."""
     try:
         yield
     except OSError as error:

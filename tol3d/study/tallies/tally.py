@@ -207,7 +207,7 @@ class _Block:
         values = {key: own.values for key, own in found.items()}
         both = [measure.name for measure in measures if (GEOMETRIC, measure.name) in values]
         values |= {(DIFFERENCE, name): values[GEOMETRIC, name] - values[ANALYTIC, name] for name in both}
-        sums, among = target_sums(self.simulation, measures, self.columns, values, self.products)
+        sums, among = target_sums(self.simulation, self.columns, values, self.products)
         tallies = {}
         for measure in measures:
             analytic, geometric = found[ANALYTIC, measure.name], found.get((GEOMETRIC, measure.name))

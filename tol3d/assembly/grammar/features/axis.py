@@ -29,7 +29,7 @@ class AxisSpec(OneFaceSpec):
     numbers: ClassVar[tuple[str, ...]] = ("at", "axis", "length")
 
     kind: Literal["axis"]
-    axis: Direction | None = Field(default=None, description="which way it runs")
+    axis: Direction | None = Field(default=None, description="direction from start to end")
     length: Length | None = Field(default=None, description="from end to end")
 
     @property
@@ -53,10 +53,10 @@ class CylinderSpec(OneFaceSpec):
     numbers: ClassVar[tuple[str, ...]] = ("at", "axis", "length", "diameter")
 
     kind: Literal["cylinder"]
-    axis: Direction | None = Field(default=None, description="which way it runs")
+    axis: Direction | None = Field(default=None, description="direction from start to end")
     length: Length | None = Field(default=None, description="from end to end")
     diameter: Length | None = Field(default=None, description="nominal")
-    hole: bool = Field(default=False, description="whether it is one, not a pin")
+    hole: bool = Field(default=False, description="True for a hole, False for a pin")
 
     @property
     def shape(self) -> Axis:
@@ -70,23 +70,24 @@ class CylinderSpec(OneFaceSpec):
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
         (face,) = faces
         length, diameter = lengths(face.extent[0], 2 * face.radius)
-        own: dict[str, Found] = {"at": lengths(*face.at), "axis": face.axis(self.axis), "length": length}
-        return {**own, "diameter": diameter, "hole": face.hole}
+        of_axis: dict[str, Found] = {"at": lengths(*face.at), "axis": face.axis(self.axis), "length": length}
+        return {**of_axis, "diameter": diameter, "hole": face.hole}
 
 
 LEAST_ANGLE: Final = 1e-4
-"""rad; of a cone: a flatter one seats at no place, a steeper one than its complement is a face."""
+"""Least half angle of a cone, and of its complement [rad]: a more slender cone holds no place along its axis, a wider
+one is a face."""
 
 
 class ConeSpec(OneFaceSpec):
-    """A taper or countersink: an axis with a cone about it, which holds its place along the axis too."""
+    """A taper or countersink: an axis with a cone about it, which also holds a mating part along the axis."""
 
     words: ClassVar[str] = "a cone"
     face_kinds: ClassVar[tuple[FaceKind, ...]] = ("cone",)
     numbers: ClassVar[tuple[str, ...]] = ("at", "axis", "length")
 
     kind: Literal["cone"]
-    axis: Direction | None = Field(default=None, description="which way it runs")
+    axis: Direction | None = Field(default=None, description="direction from start to end")
     length: Length | None = Field(default=None, description="from end to end, along the axis")
     diameters: Annotated[tuple[Annotated[Quantity, Of("length")], ...], listed("lengths", 2, 2)] | None = Field(
         default=None, description="nominal, at its start and at its end along the axis; 0 mm at an apex"
@@ -97,7 +98,7 @@ class ConeSpec(OneFaceSpec):
     half_angle: Annotated[Quantity, Of("angle")] | None = Field(
         default=None, description="from the axis to its lines: it widens along the axis"
     )
-    hole: bool = Field(default=False, description="whether the material is outside it")
+    hole: bool = Field(default=False, description="True if the material is outside it")
 
     @property
     def shape(self) -> Cone:
@@ -117,8 +118,8 @@ class ConeSpec(OneFaceSpec):
         (face,) = faces
         axis = face.axis(self.axis)
         radii = face.radii if axis == face.direction else face.radii[::-1]
-        own: dict[str, Found] = {"at": lengths(*face.at), "axis": axis, "length": lengths(face.extent[0])[0]}
-        return {**own, "diameters": lengths(*(2 * radius for radius in radii)), "hole": face.hole}
+        of_axis: dict[str, Found] = {"at": lengths(*face.at), "axis": axis, "length": lengths(face.extent[0])[0]}
+        return {**of_axis, "diameters": lengths(*(2 * radius for radius in radii)), "hole": face.hole}
 
     @model_validator(mode="after")
     def _refuse_no_cone(self) -> Self:

@@ -16,9 +16,9 @@ from tol3d.units import Dimension
 
 
 class SurfaceGapSpec(BetweenSpec):
-    """Least gap between two surfaces, one of them round, over the length that both have, at the sizes of the trial.
+    """Least gap between two surfaces, at least one of them round, over the length that both have in common.
 
-    Negative if they overlap.
+    Surfaces have the sizes of the trial; the gap is negative if they overlap.
     """
 
     reads: ClassVar[Reading] = Reading("surface_gap", f"{PLACING}:surface_gap", f"{TORSORS}:surface_gap")
@@ -30,10 +30,10 @@ class SurfaceGapSpec(BetweenSpec):
 
 
 class ContactAngleSpec(BetweenSpec):
-    """Angle of a contact normal, from the middle or plane of `from` towards that of `to`, 0 to 180°.
+    """Angle of a contact normal, which points from the middle or plane of `from` to that of `to`, 0 to 180°.
 
-    Of parallel cylinders that is at the middle of `to`. It is measured to the normal of a plane or an axis, `against`,
-    or to a direction, `along`; give one of the two.
+    The normal of parallel cylinders is read at the middle of `to`. The angle is measured to the normal of a plane or
+    to an axis, `against`, or to a direction, `along`; give one of the two.
     """
 
     dimension: ClassVar[Dimension] = "angle"
@@ -60,7 +60,7 @@ class ContactAngleSpec(BetweenSpec):
 
 
 class DistanceSpec(BetweenSpec):
-    """In space, from middle to middle, 0 or more."""
+    """Distance in space from middle to middle, 0 or more."""
 
     reads: ClassVar[Reading] = Reading("distance", f"{PLACING}:distance", f"{TORSORS}:distance")
 
@@ -86,7 +86,7 @@ class GapSpec(DirectedSpec):
 
 
 class FlushSpec(DirectedSpec):
-    """The same number: positive where the middle of `to` stands proud of that of `from`."""
+    """Height along a direction by which the middle of `to` stands proud of that of `from`; the number of a `gap`."""
 
     kind: Literal["flush"]
 
@@ -105,7 +105,7 @@ class PointPlaneSpec(OverPlaySpec):
 
 
 class AngleSpec(OverPlaySpec):
-    """Between normals or axes, 0 to 180°; about a direction with its sign."""
+    """Angle between normals or axes, 0 to 180°; about a direction, with its sign."""
 
     dimension: ClassVar[Dimension] = "angle"
     reads: ClassVar[Reading] = Reading("angle", f"{PLACING}:angle", f"{TORSORS}:angle")

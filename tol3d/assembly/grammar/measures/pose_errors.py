@@ -22,13 +22,13 @@ AXES = dict(zip("xyz", np.eye(3), strict=True))
 
 
 class PoseErrorSpec(TimedSpec):
-    """A feature against its nominal place, in the frame of a part."""
+    """Deviation of a feature from its nominal pose, in the frame of a part."""
 
     words: ClassVar[str] = "an error of place or turn"
-    reads_along: ClassVar[Reading]  # along a component; `reads` reads the size
+    reads_along: ClassVar[Reading]  # reads the component along an axis, `reads` the size
 
     of: FeatureName = Field(description="the feature, such as link 6.flange")
-    from_: Name = Field(alias="from", description="the part that sees it, such as base")
+    from_: Name = Field(alias="from", description="the part in whose frame it is read, such as base")
     component: Component = Field(
         default="size", description="along, or about, x, y or z of that part; or the size of all three"
     )
@@ -40,11 +40,11 @@ class PoseErrorSpec(TimedSpec):
 
     @property
     def twin(self) -> FeatureName:
-        """The feature that lies nominally where its own one does, on the part that sees it."""
+        """Name of the feature fixed to the part that sees it, where the measured feature lies nominally."""
         return f"{self.of} nominal in {self.from_}"
 
     def measured(self, moves: Sequence[str]) -> Measured:
-        """From its twin to its own feature."""
+        """Model that reads from the twin to the feature."""
         return Measured(
             self.reads_along if self.component in AXES else self.reads, (self.twin, self.of), AXES.get(self.component)
         )
@@ -54,7 +54,7 @@ class PoseErrorSpec(TimedSpec):
         return (self.from_, part_of(self.of))
 
     def references(self) -> tuple[Reference, ...]:
-        """Both parts, and the move after which it is read."""
+        """Parts of the feature and of `from`, and the move after which it is read."""
         parts = (Reference(("of",), part_of(self.of), (SolidSpec,)), Reference(("from",), self.from_, (SolidSpec,)))
         return (*parts, *self.timing)
 
@@ -66,7 +66,7 @@ class PoseErrorSpec(TimedSpec):
 class PositionErrorSpec(PoseErrorSpec):
     """Deviation of the feature's position from nominal, as seen from the part `from`.
 
-    Along `x`, `y` or `z` of that part, or the `size` of all three.
+    Its component along `x`, `y` or `z` of that part, or its `size`.
     """
 
     reads: ClassVar[Reading] = DistanceSpec.reads
@@ -76,9 +76,9 @@ class PositionErrorSpec(PoseErrorSpec):
 
 
 class OrientationErrorSpec(PoseErrorSpec):
-    """The rotation vector that turns the nominal frame of the feature into that of the trial.
+    """Rotation vector that turns the nominal frame of the feature into that of the trial.
 
-    About `x`, `y` or `z` of the part `from`, which sees it, or its `size`.
+    Its component about `x`, `y` or `z` of the part `from`, which sees it, or its `size`.
     """
 
     dimension: ClassVar[Dimension] = "angle"
@@ -89,11 +89,11 @@ class OrientationErrorSpec(PoseErrorSpec):
 
 
 class DirectionErrorSpec(TimedSpec):
-    """The angle between the axis of the feature and its nominal direction, as the part `from` sees it.
+    """Angle between the axis of the feature and its nominal direction, as the part `from` sees it.
 
-    Its `size`; or, of an axis that tilts `against` another one, the component `along` the tilt, positive where it tilts
-    further, or `across` it, positive counter-clockwise. Where it does not tilt nominally these are along x and y of the
-    axis `against`.
+    Its `size`; or, of an axis that tilts from another one, `against`, the component `along` the tilt, positive where it
+    tilts further, or `across` it, positive counter-clockwise. If it does not tilt nominally, these are along x and y of
+    the axis `against`.
     """
 
     words: ClassVar[str] = "an error of a direction"
@@ -104,7 +104,9 @@ class DirectionErrorSpec(TimedSpec):
     kind: Literal["direction_error"]
     of: FeatureName = Field(description="the feature whose z is read, such as gear 2.axis")
     from_: Name | None = Field(
-        default=None, alias="from", description="the part that sees it; default: the first one that is fixed"
+        default=None,
+        alias="from",
+        description="the part in whose frame it is read; default: the first one that is fixed",
     )
     against: FeatureName | None = Field(default=None, description="the axis from which it tilts, such as frame.axis")
     component: Literal["size", "along", "across"] = Field(
@@ -118,11 +120,11 @@ class DirectionErrorSpec(TimedSpec):
 
     @property
     def twin(self) -> FeatureName:
-        """The feature that lies nominally where its own one does, on the part that sees it."""
+        """Name of the feature fixed to the part that sees it, where the measured feature lies nominally."""
         return f"{self.of} nominal in {self.from_ or 'the world'}"
 
     def measured(self, moves: Sequence[str]) -> Measured:
-        """From its twin to its own feature, by the axis from which it tilts."""
+        """Model that reads from the twin to the feature, along or across the tilt from `against`."""
         if self.component == "size" or self.against is None:
             return Measured(self.reads, (self.twin, self.of))
         across = np.array([0.0, 1.0]) if self.component == "across" else np.array([1.0, 0.0])
@@ -135,13 +137,13 @@ class DirectionErrorSpec(TimedSpec):
         return (*others, part_of(self.of), *([part_of(self.against)] if self.against else []))
 
     def references(self) -> tuple[Reference, ...]:
-        """The parts, and the move after which it is read."""
-        found = [Reference(("of",), part_of(self.of), (SolidSpec,))]
+        """Parts of its features and of `from`, and the move after which it is read."""
+        parts = [Reference(("of",), part_of(self.of), (SolidSpec,))]
         if self.from_ is not None:
-            found.append(Reference(("from",), self.from_, (SolidSpec,)))
+            parts.append(Reference(("from",), self.from_, (SolidSpec,)))
         if self.against is not None:
-            found.append(Reference(("against",), part_of(self.against), (SolidSpec,)))
-        return (*found, *self.timing)
+            parts.append(Reference(("against",), part_of(self.against), (SolidSpec,)))
+        return (*parts, *self.timing)
 
     def uses(self) -> Iterator[Use]:
         """The feature, and the axis from which it tilts."""
@@ -167,7 +169,7 @@ class DifferenceSpec(AssemblyMeasureSpec):
 
     @classmethod
     def lacking(cls) -> Iterator[str]:
-        """Nothing: both measures have their readings."""
+        """Nothing: it needs no reading of its own."""
         return iter(())
 
     @property
@@ -176,10 +178,14 @@ class DifferenceSpec(AssemblyMeasureSpec):
         return (self.of, self.minus)
 
     def measured(self, moves: Sequence[str]) -> Measured:
-        """Nothing by itself."""
+        """Nothing by itself: both measures are read instead.
+
+        Raises:
+            TypeError: always.
+        """
         raise TypeError("a difference is read as its measures are")
 
     def references(self) -> tuple[Reference, ...]:
-        """Both measures; those of lengths."""
+        """Both measures, each of features or of a pose error."""
         specs = (FeatureMeasureSpec, PoseErrorSpec)
         return Reference(("of",), self.of, specs), Reference(("minus",), self.minus, specs)

@@ -1,17 +1,17 @@
 """A cycloid stage at rest under a torque on its carrier: discs and cranks as bodies on one-sided contacts, compiled.
 
-Unknown are the carrier's turn, the place and turn of each disc, and those of each crank. Contacts are pins against
-lobes, throws in the holes of discs and cranks in those of the carrier, each by half its clearance, and both flanks of
+Unknowns are the carrier's turn, the place and turn of each disc, and those of each crank. Contacts are pins against
+lobes; throws in the holes of discs and cranks in those of the carrier, each with half its clearance; and both flanks of
 each planet against the sun's, between which its crank may turn. The torque turns the carrier as far as all contacts let
-it: a linear programme with the gaps and slopes of the pose reached, solved again from where it leads until nothing
-moves. A round clearance is half-planes across two directions first; each solution that leaves the circle adds the
-tangent there, so that the circle is met to 1e-10 mm. Tangents at pins that overlap stay, too, for a pin in a hollow
-flank rests on its bend: with the last tangent alone bodies may go to and fro for ever. From the third programme on the
-contacts that carry are met by Newton's method, see rest_balance.py; where these are not yet the right ones the
-programmes go on. The multiplier of a gap is the force on it per torque.
+it: a linear programme with the gaps and slopes of the pose reached, solved again from its solution until nothing moves.
+A round clearance begins as half-planes across two directions; each solution that leaves the circle adds the tangent
+there, so that the circle is met to 1e-10 mm. Tangents at overlapping pins are kept, too, because a pin in a hollow
+flank rests on its curvature: with the last tangent alone bodies may alternate for ever. From the third programme on the
+loaded contacts are met by Newton's method, see rest_balance.py; while these are not yet the right ones the programmes
+go on. The multiplier of a gap is the force on it per torque.
 
-Builds in a row that differ in pins and lobes alone, such as those that look at one after the other, rest alike as long
-as those that carry are the same and nothing else overlaps there: such a rest is not looked for again.
+Successive builds that differ in pins and lobes alone, such as those that move one pin after another, have the same rest
+as long as the loaded pins are the same and no other overlaps there: such a rest is not solved again.
 """
 
 from typing import Any, Final
@@ -36,22 +36,22 @@ from tol3d.numerics.loops import copy, fill
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED, new_rooms, solve_lp
 
 NOT_HELD: Final = 3
-"""A body leaves by the end of the room that it is given: nothing stops it."""
+"""A body reaches the end of its room: nothing stops it."""
 MET: Final = 1e-10  # mm
-NEARLY_MET: Final = 1e-8  # mm; in the last steps, where idle bodies still go to and fro and the carrier stands
+NEARLY_MET: Final = 1e-8  # mm; in the last steps, in which unloaded bodies may alternate while the carrier stands
 STILL: Final = 5e-11  # mm at the arm, of the carrier's turn
 MOST_STEPS: Final = 150
-SETTLES: Final = 2  # steps before a balance on the contacts that carry is tried
-LAST: Final = 100  # steps before
-WILD: Final = 8  # steps in which bodies may go anywhere in their room; then
-NEAR: Final = 100.0  # times the deepest overlap or the last turn, so that idle bodies do not go to and fro
-CUTS: Final = 40  # tangents a bearing
-BENDS: Final = 60  # tangents at pins
+SETTLES: Final = 2  # steps before Newton's method on the loaded contacts is tried
+LAST: Final = 100  # steps before the last ones, in which NEARLY_MET is enough
+WILD: Final = 8  # steps in which bodies may go anywhere in their room
+NEAR: Final = 100.0  # longest later step over the deepest overlap or last turn, so that unloaded bodies settle
+CUTS: Final = 40  # most tangents of a bearing
+BENDS: Final = 60  # most tangents at pins
 
 
 @nested
 def boxed(count: int, basis: Any, loads: Any) -> bool:
-    """True if the room given to a body carries some of the torque."""
+    """True if an end of a body's room carries some of the torque."""
     carried = 0.0
     for k in range(count):
         if basis[k] < count:
@@ -61,15 +61,15 @@ def boxed(count: int, basis: Any, loads: Any) -> bool:
 
 @nested
 def begin(count: int, basis: Any, sides: Any) -> None:
-    """Put the first basis: the room of each body."""
+    """Write the first basis: the rows of the bodies' room."""
     for k in range(count):
         basis[k], sides[k] = k, 1.0
 
 
 @nested
 def room_written(count: int, discs: int, near: float, z: Any, lower: Any, upper: Any) -> None:
-    """Write the limits of the next step of bodies: to the end of their room, and no farther than near."""
-    for k in range(count):
+    """Write the limits of the bodies' next step: to the end of their room, and at most `near` [mm]."""
+    for k in range(count):  # turns of cranks have more room
         most = TURNS * ROOM if k > 3 * discs and (k - 3 * discs) % 3 == 0 else ROOM
         lower[k], upper[k] = max(-most - z[k], -near), min(most - z[k], near)
 
@@ -86,10 +86,10 @@ def bend_kept(pin: int, gap: float, row: Any, z: Any, bend: Any) -> None:
 
 @nested
 def bend_written(bend: Any, z: Any, row: int, rows: Any, lower: Any, upper: Any) -> None:
-    """Write the row of a tangent that was kept.
+    """Write the row of a kept tangent.
 
-    Where a flank is hollow a pin goes along its bend: the gap is less than any tangent says, so that all hold, as those
-    of a round bearing do. One that says less than the gap is not of such a bend and holds nothing any more.
+    At a hollow flank the gap is less than by any tangent, so that all hold, as those of a round bearing do. A tangent
+    below the gap is not of a hollow flank, and is dropped.
     """
     count = z.shape[0]
     pin, value = int(bend[count + 1]), bend[count]
@@ -108,7 +108,7 @@ def bend_written(bend: Any, z: Any, row: int, rows: Any, lower: Any, upper: Any)
 def bends_written(
     step: int, pinned: int, first: int, cuts: int, z: Any, planes: Any, bends: Any, rows: Any, lower: Any, upper: Any
 ) -> int:  # fmt: skip
-    """Write the rows of tangents at pins, and keep those at pins that overlap now; the number of planes."""
+    """Write the rows of kept tangents at pins, and keep those at overlapping pins; returns the number of planes."""
     for k in range(cuts):
         if planes[k, 0] == PIN:
             bend_written(bends[k], z, first + k, rows, lower, upper)
@@ -123,7 +123,7 @@ def bends_written(
 
 @nested
 def begin_planes(bearings: int, planes: Any) -> int:
-    """Put the first planes: across two directions of each bearing; their number."""
+    """Write the first planes, across two directions of each bearing; returns their number."""
     cuts = 0
     for b in range(bearings):
         for axis in range(2):
@@ -137,7 +137,7 @@ def rested(
     shape: Any, stage: Any, throws: Any, made: Any, base: Any, pins: Any, clearances: Any, working: Any, sense: float,
     rooms: Any,
 ) -> tuple[int, float]:  # fmt: skip
-    """Status of a stage that is turned in a sense, and the carrier's turn [rad]."""
+    """Status of a stage whose carrier is turned in a sense, and the carrier's turn [rad]."""
     rows, lower, upper, basis, solving, x, z, planes, across, bends, _, _ = rooms
     discs, cranks, _, _, _ = stage
     radial, meshes = clearances
@@ -170,9 +170,10 @@ def rested(
                     reach = planes[k, 1] * x_b + planes[k, 2] * y_b
                     lower[first + k], upper[first + k] = -radial[b] - reach, radial[b] - reach
             if b >= cranks * discs:
-                own = count + 2 * (b - cranks * discs)
-                both = lower[own : own + 2], upper[own : own + 2]
-                mesh_written(stage, meshes, z, b - cranks * discs, (x_b, y_b), across, rows[own : own + 2], both)
+                crank = b - cranks * discs
+                mesh = count + 2 * crank
+                limits = lower[mesh : mesh + 2], upper[mesh : mesh + 2]
+                mesh_written(stage, meshes, z, crank, (x_b, y_b), across, rows[mesh : mesh + 2], limits)
         held = step < 1 or not boxed(count, basis, solving[3][0])
         met = deepest < (MET if step < LAST else NEARLY_MET)
         if step > 0 and met and abs(x[0]) < STILL and (held or near >= ROOM):
@@ -181,11 +182,11 @@ def rested(
         near = 2.0 * ROOM if step < WILD else min(more * (max(deepest, abs(x[0])) + MET), 2.0 * ROOM)
         room_written(count, discs, near, z, lower, upper)
         used = first + cuts
-        found, _, _ = solve_lp(rows[:used], lower[:used], upper[:used], across[2], basis, solving, x)
-        if found == NO_ROOM and near >= ROOM:
+        solved, _, _ = solve_lp(rows[:used], lower[:used], upper[:used], across[2], basis, solving, x)
+        if solved == NO_ROOM and near >= ROOM:
             return NO_ROOM, np.nan
-        if found != OK:  # too little room, or tangents that nearly coincide
-            more = 10.0 * more if found == NO_ROOM else 0.1 * more
+        if solved != OK:  # too little room, or tangents that nearly coincide
+            more = 10.0 * more if solved == NO_ROOM else 0.1 * more
             begin(count, basis, solving[2])
             continue
         for k in range(count):
@@ -197,7 +198,7 @@ def rested(
 
 @nested
 def note(pinned: int, working: Any, basis: Any, multipliers: Any, bends: Any, loads: Any) -> None:
-    """Write the force on each pin per torque [1/mm]."""
+    """Add the force on each pin per torque [1/mm]."""
     count, first = basis.shape[0], pinned + working.shape[0]
     for k in range(count):
         row = basis[k]
@@ -209,7 +210,7 @@ def note(pinned: int, working: Any, basis: Any, multipliers: Any, bends: Any, lo
 
 @nested
 def rests_alike(pinned: int, working: Any, loads: Any, rows: Any, lower: Any, known: Any) -> bool:
-    """True if the pins that carry, by their loads, have the gaps and slopes that are known, and no other overlaps."""
+    """True if the loaded pins have the known gaps and slopes, and no other overlaps."""
     slopes, gaps = known
     for k in range(working.shape[0]):
         row = pinned + k
@@ -238,24 +239,24 @@ def rests(
     rows: Any, lower: Any, upper: Any, basis: Any, x: Any, z: Any, planes: Any, across: Any, bends: Any, working: Any,
     poses: Any, axes: Any, system: Any, roles: Any, slopes: Any, gaps: Any,
 ) -> None:  # fmt: skip
-    """Rests of trials at crank angles.
+    """Solve the rests of trials at crank angles.
 
     Args:
         shape, throws, linkage, places, radii, lobe_pitch, lobe_profile, leans, phis: see contact_kernel.first_contacts;
-            of a disc that leans the nearer face counts.
+            of a leaning disc the nearer face is read.
         holes: of the carrier, in its frame (trials, cranks, 2) [mm].
         thrown: throws, in the crank's frame (trials, cranks, discs, 2) [mm].
         bored: holes of discs, in the profile's frame (trials, discs, cranks, 2) [mm].
         radial: half the clearance of each bearing (trials, bearings) [mm], in the order of bearing_at.
         free: least and most turn of each crank by its planet (trials, positions, cranks, 2) [rad].
-        leaving: what that turn is for a planet that lies off by 1 mm across the line of centres, and along it (2,)
+        leaving: change of that turn for a planet that lies off by 1 mm across the line of centres, and along it (2,)
             [rad/mm].
-        like: whether a trial differs from the one before it in pins and lobes alone (trials, positions).
-        sense: +1 or -1.
+        like: True if a trial differs from the one before it in pins and lobes alone (trials, positions).
+        sense: of the carrier's turn, +1 or -1.
         turns: the carrier's beyond -phi / Zc (trials, positions) [rad]; written.
         loads: on pins per torque (trials, positions, discs pins) [1/mm]; written.
-        near: working pins whose gap is at most the shape's deflection then (trials, positions); written.
-        status: of the positions; written.
+        near: number of working pins whose gap at rest is at most the shape's deflection (trials, positions); written.
+        status: OK, NOT_HELD, NO_ROOM or STALLED (trials, positions); written.
         rows: zeros, to write in, as are lower, upper, basis, x, z, planes, across, bends, working, poses, axes,
             system, roles, slopes, gaps: see `work_arrays`.
     """
@@ -303,7 +304,7 @@ def rests(
 
 
 def work_arrays(discs: int, cranks: int, pins: int) -> tuple[Array | Places, ...]:
-    """Arrays that `rests` writes in: made in it, each takes numba as long to compile as ten lines."""
+    """Arrays that `rests` writes in; made inside it, each would take numba as long to compile as ten lines."""
     count, bearings = 1 + 3 * (discs + cranks), cranks * (discs + 1)
     most = bearings * (2 + CUTS) + BENDS
     size = count + 2 * cranks + discs * pins + most

@@ -1,4 +1,4 @@
-"""Parts of a cycloid stage as numbers that solids are built of, in the frames of their builders; strips of a disc."""
+"""Parts of a cycloid stage as dimensions of their solids, in the frames of their builders; strips of a disc."""
 
 import math
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ CAD = "tol3d.gearing.cycloid.model.shapes_cad"
 
 @dataclass(frozen=True)
 class DiscHoles:
-    """Holes through a disc, on a circle about its axis but for its bore.
+    """Holes through a disc: bearing holes and windows on one circle about its axis, and its bore.
 
     Args:
         cranks: number of bearing holes, at equal angles, the first on +x; windows lie midway between them.
-        circle_radius: where holes and windows have their centres [mm].
+        circle_radius: of the centres of bearing holes and windows [mm].
         crank_diameter: of the bearing holes [mm].
         window_diameter: of the windows that the carrier's posts pass [mm]; 0 for none.
-        bore_diameter: about the disc's axis [mm]; 0 for none.
+        bore_diameter: of the bore about the disc's axis [mm]; 0 for none.
     """
 
     cranks: int
@@ -35,7 +35,9 @@ class CycloidDisc(SweptShape):
 
     Args:
         width: along z [mm].
-        clocking: of the lobes, counter-clockwise against the holes [rad]; without it a root lies on +x.
+        profile: of its lobes.
+        holes: through it.
+        clocking: turn of the lobes against the holes, counter-clockwise [rad]; at 0 a root lies on +x.
     """
 
     builder: ClassVar[str] = f"{CAD}:disc"
@@ -51,7 +53,8 @@ class PinRing(SweptShape):
 
     Args:
         width: along z.
-        pin_circle_radius: of the circle on which they stand.
+        pins: number of half-holes.
+        pin_circle_radius: of the circle of the pins' centres.
         pin_radius: of the half-holes.
         bore_radius: of the lands between the half-holes.
         outer_radius: of the rim.
@@ -93,7 +96,7 @@ class CrankSection:
 
     @property
     def at(self) -> tuple[float, float]:
-        """Its axis, x and y [mm]."""
+        """Place of its axis, x and y [mm]."""
         return self.offset * math.cos(self.azimuth), self.offset * math.sin(self.azimuth)
 
 
@@ -102,6 +105,7 @@ class Crankshaft(BuiltShape):
     """A crankshaft about z; its lowest eccentric points along +x.
 
     Args:
+        sections: from its lower end upwards.
         start: z of its lower end [mm].
     """
 
@@ -113,14 +117,14 @@ class Crankshaft(BuiltShape):
 
 @dataclass(frozen=True)
 class Carrier(BuiltShape):
-    """Two flanges about z on either side of z = 0, joined by posts midway between the cranks. Lengths in mm.
+    """Two flanges about z, one above and one below z = 0, joined by posts midway between the cranks. Lengths in mm.
 
     Args:
         cranks: number of holes for cranks, the first on +x, and of posts.
         circle_radius: of the axes of holes and posts.
-        hole_diameter, post_diameter, bore_diameter: a bore of 0 is none, posts of 0 leave the lower flange.
+        hole_diameter, post_diameter, bore_diameter: 0 for no bore; without posts (0) it is the lower flange alone.
         flange_diameter, flange_width: of either flange.
-        between: the flanges' inner faces.
+        between: distance of the flanges' inner faces.
     """
 
     builder: ClassVar[str] = f"{CAD}:carrier_of"
@@ -156,5 +160,5 @@ class LobeStrips:
 
 
 def lobe_strips(disc: CycloidDisc, steps: int) -> LobeStrips:
-    """Strips with that many steps a flank; from the cache, or from the disc's solid, built for it."""
+    """Strips of a disc with that many steps per flank; from the cache, or from its solid, built for it."""
     return LobeStrips(*face_strips(disc, (RIGHT_FLANK, LEFT_FLANK), steps))

@@ -87,28 +87,28 @@ class RVDeviated(Deviations):
     carrier_play: Array
 
     @classmethod
-    def nothing(cls, own: RVSet, trials: int) -> "RVDeviated":
+    def nothing(cls, model: RVSet, trials: int) -> "RVDeviated":
         """No deviations."""
         return cls(
-            Deviated.nothing(trials, own.profile.pins, own.discs, own.cranks),
+            Deviated.nothing(trials, model.profile.pins, model.discs, model.cranks),
             np.zeros(trials),
-            np.zeros((trials, own.cranks)),
+            np.zeros((trials, model.cranks)),
             np.zeros((trials, 2)),
-            np.zeros((trials, own.cranks, 2)),
-            np.zeros((trials, own.discs, 2)),
-            np.zeros((trials, own.discs, own.cranks)),
-            np.zeros((trials, own.cranks)),
+            np.zeros((trials, model.cranks, 2)),
+            np.zeros((trials, model.discs, 2)),
+            np.zeros((trials, model.discs, model.cranks)),
+            np.zeros((trials, model.cranks)),
         )
 
     @override
-    def reached(self, own: RVSet, acts: Acts) -> tuple[Array, Along]:
+    def reached(self, model: RVSet, acts: Acts) -> tuple[Array, Along]:
         reach = EFFECTS[acts.effect]
         array: Array = getattr(self if hasattr(self, reach.array) else self.stage, reach.array)
         if acts.effect == RING:
-            return array, _ring_moved(own.profile.pins)
+            return array, _ring_moved(model.profile.pins)
         if acts.effect == PINS:
-            azimuths = own.azimuths / (2 * np.pi)
-            return array, lambda components: turned(components.reshape(len(components), own.cranks, 2), azimuths)
+            azimuths = model.azimuths / (2 * np.pi)
+            return array, lambda components: turned(components.reshape(len(components), model.cranks, 2), azimuths)
         into = array if reach.part is None else array[..., reach.part]
         sizes = [size if word else 1 for size, word in zip(into.shape[1:], reach.each, strict=False)]
         return into, lambda components: components.reshape(len(components), *sizes, *(2,) * reach.planar)

@@ -1,6 +1,6 @@
-"""Displacements, compiled to builds: they are linear, so that each deviation has its coefficients.
+"""Displacements as coefficients of deviations: builds are linear in them, and a kernel adds them up.
 
-A turn about a point off the gear's origin is the exception, worked out in sums.py.
+A turn about a point off the gear's origin is not linear; sums.py computes it.
 """
 
 from dataclasses import dataclass, replace
@@ -21,11 +21,13 @@ class CompiledDisplacements:
     """Dependence of a build's seats on deviations, as summed by the kernel.
 
     Args:
-        terms: (terms, 2), component of the deviations and slot: SLOTS a seat, then the growth of each mesh's housing.
-        coefficients: (terms,), of the slot by the component.
+        terms: (terms, 2), component of the deviations, and slot of the seat: SLOTS per seat, then the growth of each
+            mesh's housing.
+        coefficients: (terms,), change of the slot per change of the component [mm/mm, rad/rad ...].
         pivots: (pivots, 2), component and seat of turns about a point off the gear's origin.
         levers: (pivots, 4), rotation vector per deviation in the seat's frame at rest, and the point's z there [mm].
-        rest: (seats, 16), rotation of each seat's frame at rest row by row, its origin [mm], its mesh or -1; padded.
+        rest: (seats, 16), rotation of each seat's frame at rest row by row, its origin [mm], the mesh that it is the
+            driven seat of or -1; padded. Frames of driver seats are the identity.
         flanks: offsets of single flanks.
     """
 
@@ -60,7 +62,7 @@ class CompiledDisplacements:
 
 
 def compiled_displacements(model: Model) -> CompiledDisplacements:
-    """The displacements of a model's contributors."""
+    """Coefficients of all of a model's contributors."""
     terms, coefficients, pivots, levers = [], [], [], []
     for contributor in model.contributors:
         first, components = model.component_slices[contributor.name].start, len(contributor.draw.components)

@@ -1,4 +1,4 @@
-"""Rows of builds through the contact: the loops that every kind of pair has in common; kernels.py compiles them."""
+"""Contacts of meshes, build by build: the loops common to all kinds of pairs; kernels.py compiles them."""
 
 import math
 from typing import Any, NamedTuple
@@ -30,14 +30,14 @@ from tol3d.numerics.loops import fill
 
 Integers = NDArray[np.int64]
 
-FREE = 1e-6  # mm; a play above minus this is called free
-DRIVEN_ANGLE, GAP, DRIVEN_TURN, DRIVER_TURN, CONTACT = 0, 1, 2, 3, 4
-READINGS = 7  # columns of a row's readings: the four above, and the contact's x, y, z
+FREE = 1e-6  # mm; a gap of the non-working flanks below minus this is an interference
+DRIVEN_ANGLE, GAP, DRIVEN_TURN, DRIVER_TURN, CONTACT = 0, 1, 2, 3, 4  # columns of a row's readings
+READINGS = 7  # number of these columns: four, and x, y, z of the contact
 
 
 @part
 def pose_of(shafts: Array, row: int, driver: int, driven: int) -> Pose:
-    """Pose of the driver in the driven shaft's frame; `shafts` (rows, gears, 4, 4) as in a Build."""
+    """Pose of the driver's shaft in the driven shaft's frame; `shafts` (rows, gears, 4, 4) as in a Build."""
     a, b = shafts[row, driver], shafts[row, driven]
     x, y, z = a[0, 3] - b[0, 3], a[1, 3] - b[1, 3], a[2, 3] - b[2, 3]
     return Pose(
@@ -71,7 +71,7 @@ def build_of(
     row: int,
     flanks: Any,
 ) -> MeshBuild:
-    """The mesh of a row, built, its single flanks offset as a MeshBuild has it."""
+    """The mesh of a row; `flanks` are offsets of single flanks as in MeshBuild, other arguments as in `read_rows`."""
     driver, driven = gears
     return MeshBuild(
         grown(pinion, scale[row, driver]),
@@ -94,10 +94,11 @@ class Looks(NamedTuple):
     """Evaluations of the sides of a mesh.
 
     Args:
-        working, gap: of the working flanks until they touch, of the gap of the others.
-        closing: of those others until they touch.
-        gap_closes: True if the gap's evaluation serves for that too.
-        of_driver: for the turn of the driver until they touch.
+        working: of the working flanks, for their contact.
+        gap: of the non-working flanks, for their gap.
+        closing: of the non-working flanks, for the turn of the driven gear until they touch.
+        gap_closes: True if `gap` serves for that turn, too.
+        of_driver: of the non-working flanks, for the turn of the driver until they touch.
     """
 
     working: Look
@@ -122,7 +123,15 @@ def looks_of(pair: PairNumbers, which: Integers) -> Looks:
 
 @part
 def free_turn(build: MeshBuild, at: Turn, other: Side, angle: float, looks: Looks) -> float:
-    """Turn of the driven gear [rad] until the non-working flanks touch; NaN where it cannot be known."""
+    """Turn of the driven gear [rad] until the non-working flanks touch; NaN where it is not known.
+
+    Args:
+        build: the mesh.
+        at: the gears with the working flanks in contact.
+        other: the non-working side there, by `looks.gap`.
+        angle: of the driver [rad].
+        looks: evaluations.
+    """
     sense, near_at, near = looks.working.sigma * opening(build.driven), at, other
     if not looks.gap_closes:  # the smallest gap nearly gives the turn
         near_at = driven_on(at, sense * other.turn)
@@ -133,7 +142,7 @@ def free_turn(build: MeshBuild, at: Turn, other: Side, angle: float, looks: Look
 
 @part
 def fault_of(side: Side) -> int:
-    """OK where a side is seen, else why it is not."""
+    """OK if a side could be evaluated; else NO_CONTACT or OUT_OF_RANGE."""
     if side.gap == math.inf and side.acts:
         return NO_CONTACT
     return OUT_OF_RANGE if side.gap == math.inf or not side.known or not side.acts else OK
@@ -141,7 +150,7 @@ def fault_of(side: Side) -> int:
 
 @part
 def write_contact(contact: Array, side: Side, shaft: Array, out: float) -> None:
-    """Write a contact (3,) in the world, on the driver's flank, which its offset [mm] brings `out` of its tooth."""
+    """Write the point of contact on the driver's flank (3,), in the world; `out` is the flank's offset [mm]."""
     x, y, z = side.x - out * side.nx, side.y - out * side.ny, side.z - out * side.nz
     for k in range(3):
         contact[k] = shaft[k, 0] * x + shaft[k, 1] * y + shaft[k, 2] * z + shaft[k, 3]
@@ -161,7 +170,7 @@ def read_row(
     teeth: Integers,
     status: NDArray[np.int8],
 ) -> None:
-    """As `read_rows`, which has it written out (15 % faster), of a row's build and its driver's angle [rad]."""
+    """Seat one row and read it: the body of `read_rows`, which has it written out because that is 15 % faster."""
     gears, pair, sigma = (which[0], which[1]), build.pair, looks.working.sigma
     fill(readings[row], np.nan)
     teeth[row], status[row] = 0, OUT_OF_RANGE
@@ -202,12 +211,12 @@ def gap_row(
     vectors: Array,
     at_end: NDArray[np.bool_],
 ) -> None:
-    """Gaps of the tooth pairs of a row; arguments as in `gap_rows`, the row's build and its gears' angles [rad]."""
+    """Gaps of the tooth pairs of one row; arguments as in `gap_rows`, and the row's build and gear angles [rad]."""
     gears, sigma = (which[0], which[1]), float(which[2])
     at = standing(build, angles[0], angles[1])
     pose = pose_at(build, at)
     middle = section(build.driver, build.pair.section)
-    own = middle if which[3] else build.driver
+    driver = middle if which[3] else build.driver
     shaft = shafts[row, gears[1]]
     for k in range(driver_teeth.shape[1]):
         value[row, k] = np.nan
@@ -216,7 +225,7 @@ def gap_row(
         if not wanted[row, k]:
             continue
         tooth = float(driver_teeth[row, k])
-        near = pair_nearest(build, at, sigma, tooth, pose, own, middle.low, 0.0, SHARP_FALL)
+        near = pair_nearest(build, at, sigma, tooth, pose, driver, middle.low, 0.0, SHARP_FALL)
         value[row, k] = near.gap
         if near.gap == math.inf:
             continue
@@ -252,15 +261,15 @@ def read_rows(
     Args:
         pinion, wheel: the nominal teeth of driver and driven.
         pair: which of them may meet.
-        nominal: where the driven's shaft sees the driver's in the nominal pair.
-        which: driver and driven in the arrays of the build; working flank; teeth; whether contact and gap are those of
-            the section; whether the turns of driven and of driver are wanted.
+        nominal: pose of the driver's shaft in the driven shaft's frame, of the nominal pair.
+        which: indices of driver and driven in the arrays of the build; sign of the working flank; teeth, see Look; 1 if
+            the contact, and if the gap, are read in the section; 1 if the turns of driven, and of driver, are wanted.
         shafts, centre, flank_turn, flank_offset, scale: of a Build, (rows, gears, ...).
         driver_angles: (rows,) [rad].
-        readings: (rows, READINGS), written: the driven gear's angle at rest [rad], the gap of the non-working flanks
-            [mm], the turns of driven and driver until they touch [rad], the contact on the driver, world [mm]; gap
-            and turns are below 0 where those flanks overlap.
-        teeth, status: (rows,), written: the driver's tooth that touches, and what became of the mesh.
+        readings: (rows, READINGS), written: the driven gear's angle in contact [rad], the gap of the non-working flanks
+            [mm], the turns of driven and driver until they touch [rad], the contact on the driver in the world [mm];
+            gap and turns are below 0 where those flanks overlap. NaN where not known or not wanted.
+        teeth, status: (rows,), written: the touching tooth of the driver, and the status of the mesh.
     """
     gears, looks = (which[0], which[1]), looks_of(pair, which)
     sigma = looks.working.sigma
@@ -311,15 +320,16 @@ def gap_rows(
     vectors: Array,
     at_end: NDArray[np.bool_],
 ) -> None:
-    """Gaps of the tooth pairs that are asked for.
+    """Gaps of the wanted tooth pairs.
 
     Args:
-        pinion ... scale: as in `read_rows`, but for `which`: driver, driven, flank, whether of the section.
+        pinion ... scale: as in `read_rows`, but `which`: indices of driver and driven; sign of the flank; 1 for the
+            section.
         driver_angles, driven_angles: (rows,) [rad].
         driver_teeth, wanted: (rows, pairs).
         value: (rows, pairs) [mm], written; NaN where not wanted, inf where the faces do not overlap.
-        vectors: (rows, pairs, 3, 3), written: points on driver and driven, normal from driver to driven; world.
-        at_end: (rows, pairs), written: whether either flank ends there.
+        vectors: (rows, pairs, 3, 3), written: points on driver and driven [mm], normal from driver to driven; world.
+        at_end: (rows, pairs), written: True where either flank ends at its point.
     """
     gears = (which[0], which[1])
     for row in range(len(driver_angles)):

@@ -1,1 +1,1 @@
-"""The analytic method of planetary sets: gaps to first order."""
+"""The analytic method of planetary sets: contacts by gaps to first order."""

@@ -38,9 +38,9 @@ class Deviated(Deviations):
     aside: Array
 
     @classmethod
-    def nothing(cls, own: PlanetarySet, trials: int) -> "Deviated":
+    def nothing(cls, model: PlanetarySet, trials: int) -> "Deviated":
         """No deviations."""
-        centrals, gears, planets = len(own.meshes), len(own.gears), own.planets
+        centrals, gears, planets = len(model.meshes), len(model.gears), model.planets
         return cls(
             np.zeros((trials, centrals)),
             np.zeros((trials, gears, planets)),
@@ -52,14 +52,14 @@ class Deviated(Deviations):
             np.zeros((trials, centrals, 2)),
         )
 
-    def reached(self, own: PlanetarySet, acts: Acts) -> tuple[Array, Along]:
+    def reached(self, model: PlanetarySet, acts: Acts) -> tuple[Array, Along]:
         """See Deviations; components of offsets are in the gear's own frame, whose x goes through tooth 0's middle."""
         pins = {"pin": self.pins, "pin outwards": self.pins[:, :, 0], "pin round": self.pins[:, :, 1]}
         if acts.effect in pins:
             return pins[acts.effect], shaped(pins[acts.effect])
-        centrals = [mesh.central.name for mesh in own.meshes]
+        centrals = [mesh.central.name for mesh in model.meshes]
         of_planets = acts.gear not in centrals
-        place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
+        place = [gear.name for gear in model.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
         arrays = {
             "thickness": (self.central_thickness, self.planet_thickness),
             "offset": (self.central_offset, self.planet_offset),
@@ -67,7 +67,7 @@ class Deviated(Deviations):
             "aside": (self.aside, self.aside),
         }
         into = arrays[acts.effect][of_planets][:, place]
-        facing = 0.0 if of_planets else own.meshes[place].facing
+        facing = 0.0 if of_planets else model.meshes[place].facing
         return into, partial(_turned, facing) if acts.effect == "offset" and facing else shaped(into)
 
 

@@ -1,4 +1,4 @@
-"""Tolerances of planetary sets: their kinds, the effect of each, and its draw."""
+"""Tolerances of planetary sets: their kinds, effects and draws."""
 
 import math
 from dataclasses import dataclass, replace
@@ -30,10 +30,11 @@ from tol3d.study.system.steepest import Values, steepest_ends
 
 @dataclass(frozen=True)
 class EachZone(EachOwn):
-    """Displacements of all planets, each in a zone of its own: outwards and across, one after the other.
+    """Displacements of all planets [mm], each in a zone of its own: radial and tangential, planet by planet.
 
     Args:
-        each: that of one planet, of two components.
+        each: draw of one planet, of two components.
+        names: of the planets.
     """
 
     axes: ClassVar[tuple[str, str]] = ("radial", "tangential")
@@ -70,27 +71,27 @@ class EachZone(EachOwn):
         return replace(self, each=self.each.scaled(factor))
 
     def ends(self, values: Values, *, turning: bool) -> Array:
-        """See Draw: all of them along the steepest direction, as far as one reaches along it by itself.
+        """See Draw: all planets along the steepest direction, as far as one alone reaches along it.
 
-        All bores at their worst ends at once would be far rarer than the end of one.
+        All bores at their worst ends together would be far rarer than one at its end.
         """
         steps, mean = np.sqrt(np.diagonal(self.covariance)), np.array(self.mean(turning=False))
         return steepest_ends(values, mean, steps, self._reach)
 
     def _reach(self, slopes: Array) -> Array:
-        """Reach of all components along slopes, each as large a part of its own reach as its slopes are of all."""
+        """Components at the end along slopes: each planet at |its slopes| / |all slopes| of its own reach."""
         middle = np.array(self.each.mean(turning=False))
         size = float(np.sqrt((slopes * slopes).sum())) or 1.0
         ends = [
-            middle + float(np.sqrt((own * own).sum())) / size * (self.each.furthest(own) - middle)
-            for own in slopes.reshape(len(self.names), -1)
+            middle + float(np.sqrt((planet * planet).sum())) / size * (self.each.furthest(planet) - middle)
+            for planet in slopes.reshape(len(self.names), -1)
         ]
         return np.concatenate(ends)
 
 
 @dataclass(frozen=True)
 class EachJudgedZone(EachZone):
-    """The same of a process, which the zone judges only."""
+    """Displacements of all planets by a process; zones only judge them."""
 
     each: Process
 
@@ -99,20 +100,20 @@ class EachJudgedZone(EachZone):
         return replace(self, each=self.each.with_law(law))
 
     def beyond(self, *components: Array) -> NDArray[np.bool_]:
-        """See JudgedDraw: where any bore lies outside its zone."""
-        outside = [~self.each.zone.inside(np.stack(own, axis=-1)) for own in parts_of(components, 2)]
+        """See JudgedDraw: True where any bore lies outside its zone."""
+        outside = [~self.each.zone.inside(np.stack(bore, axis=-1)) for bore in parts_of(components, 2)]
         return np.asarray(np.any(outside, axis=0))
 
 
 KINDS: Final = (ToothThicknessSpec, EccentricitySpec, ToothRunOutSpec, ClockingSpec, PlanetPinSpec, BorePositionSpec)
-"""Tolerances of planetary sets; those of gears are shared with trains."""
+"""Kinds of tolerances of planetary sets; those of gears are shared with trains."""
 
 
 def acts_of(scene: Scene, planetary_set: PlanetarySet, name: str, spec: Any) -> Acts:
     """Effect of a tolerance on the set.
 
     Raises:
-        SceneError: it acts on nothing of a set, or of this one.
+        SceneError: of a kind that does not act on planetary sets, or of a part that is not in this one.
     """
     if not isinstance(spec, KINDS):
         words = ", ".join(str(kind_of(kind)) for kind in KINDS)
@@ -129,14 +130,14 @@ def acts_of(scene: Scene, planetary_set: PlanetarySet, name: str, spec: Any) -> 
     if isinstance(spec, ToothThicknessSpec):
         part = scene.parts[spec.of]
         assert isinstance(part, GearSpec)
-        counted = 1 / math.cos(part.pressure_angle.internal) if spec.is_normal else 1.0
-        factor = spec.sign_in(ring=isinstance(part, InternalGearSpec)) * counted
+        arc_per_stated = 1 / math.cos(part.pressure_angle.internal) if spec.is_normal else 1.0
+        factor = spec.sign_in(ring=isinstance(part, InternalGearSpec)) * arc_per_stated
         return Acts("thickness", spec.of, factor, spec.over)
     return Acts("clocking" if isinstance(spec, ClockingSpec) else "offset", spec.of)
 
 
 def draw_of(scene: Scene, planetary_set: PlanetarySet, acts: Acts, spec: Any) -> Draw:
-    """Draw of the components: independent ones for each planet, pin and bore."""
+    """Draw of a tolerance's components: of planets, pins and bores an independent one each."""
     planets = numbered("planet", planetary_set.planets)
     if isinstance(spec, BorePositionSpec):  # its axis parallel to the set's
         draw = drawn_by(spec.law, axis_section(spec.zone.diameter.internal), scene.files)
