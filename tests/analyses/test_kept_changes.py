@@ -195,6 +195,44 @@ def test_a_shared_law_is_changed_at_its_tolerance_alone() -> None:
     assert_kept("", Change("t", factor=0.5), scene, own)
 
 
+TURNING = "measures: {error: {kind: transmission_error, of: mesh, positions: 384, take: range}}"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        (
+            "{kind: tooth_to_tooth, of: a, limits: {grade: 7}, law: {kind: uniform}}",
+            "{kind: tooth_to_tooth, of: a, limits: {size: 16.25 um}, law: {kind: uniform}}",
+            "{size: 16.25 um}, was grade 7",
+        ),
+        (
+            "{kind: pitch_deviation, of: a, flanks: each, limits: {iso_class: 7}, law: {kind: normal, cpk: 1.33}}",
+            "{kind: pitch_deviation, of: a, flanks: each, limits: {single: 15 um, cumulative: 43.75 um}, "
+            "law: {kind: normal, cpk: 1.33}}",
+            "{single: 15 um, cumulative: 43.75 um}, was iso_class 7",
+        ),
+        (
+            "{kind: helix_slope, of: a, flanks: each, each: tooth, law: {kind: stated, distribution: ±4 um}}",
+            "{kind: helix_slope, of: a, flanks: each, each: tooth, law: {kind: stated, distribution: ±5 um}}",
+            None,
+        ),
+    ],
+)
+def test_classes_of_flanks_become_the_numbers_that_they_are_of_the_gear(
+    before: str, after: str, words: str | None
+) -> None:
+    """f_i'' 13 um and f_p 12 um, F_p 35 um, each by 1.25."""
+    measures = PAIR[PAIR.index("measures:") :].strip()
+    text = PAIR.replace(measures, TURNING).replace("60.2", "60.5")
+    entry = "{kind: tooth_thickness, of: a, distribution: WRITTEN}"
+    scene = read(text.replace(entry, before))
+    own = response_of(simulation_of(scene), analytic=True)
+    kept = assert_kept("", Change("t", factor=1.25), scene, own)
+    assert kept.text == text.replace(entry, after)
+    assert in_numbers(scene, kept).get("t") == words
+
+
 ANCHORED = """\
   t: &all
     kind: tooth_thickness
