@@ -14,7 +14,7 @@ from places import ROOT
 
 PACKAGE_FOLDERS = {"tol3d": ROOT / "tol3d", "tol3d.parts": ROOT / "parts", "tol3d.scenes": ROOT / "scenes"}
 
-APPLICATIONS = ("adjustment", "design", "drafting", "records")
+APPLICATIONS = ("adjustment", "design", "drafting", "records", "workbench")
 COMMANDS = tuple(f"tol3d/apps/{own}/commands.py" for own in APPLICATIONS)
 
 DOORS = {
@@ -36,6 +36,8 @@ DOORS = {
     "ruamel": ("tol3d/scene/",),
     "yaml": ("tol3d/scene/text.py", "tol3d/scene/splice.py"),
     "joblib": ("tol3d/study/execution/pools.py",),
+    "starlette": ("tol3d/apps/workbench/",),
+    "uvicorn": ("tol3d/apps/workbench/commands.py",),
     "dask": ("tol3d/study/execution/pools.py",),
     "distributed": ("tol3d/study/execution/pools.py",),
     "pyarrow": ("tol3d/study/runs/parquet.py", "tol3d/apps/records/csv_file.py"),

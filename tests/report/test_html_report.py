@@ -254,13 +254,16 @@ def test_every_kind_of_system_has_a_page(name: str, tmp_path: Path) -> None:
     assert sum(own == "svg" for own, _ in page.elements) >= len(run.found.measures)
 
 
-def test_the_3d_view_is_the_one_that_was_bundled() -> None:
-    told = (ROOT / "viewer" / "viewer.sha256").read_text().strip()
-    bundle = (ROOT / "tol3d" / "report" / "html" / "viewer.js").read_bytes()
-    assert hashlib.sha256(bundle).hexdigest() == told
-    assert b"</script" not in bundle
-    licence = (ROOT / "tol3d" / "report" / "html" / "LICENSE.three").read_text()
-    assert licence.startswith("The MIT License")
+@pytest.mark.parametrize(
+    ("bundle", "licence"),
+    [("report/html/viewer", "LICENSE.three"), ("apps/workbench/page/editor", "LICENSE.codemirror")],
+)
+def test_bundles_are_those_that_were_made_with_their_licences(bundle: str, licence: str) -> None:
+    script = (ROOT / "tol3d" / f"{bundle}.js").read_bytes()
+    told = (ROOT / "viewer" / Path(bundle).name).with_suffix(".sha256").read_text().strip()
+    assert hashlib.sha256(script).hexdigest() == told
+    assert b"</script" not in script
+    assert "Permission is hereby granted" in (ROOT / "tol3d" / bundle).with_name(licence).read_text()
 
 
 # runs of every sort -------------------------------------------------------------------------------
