@@ -11,8 +11,7 @@ import hypothesis
 import pytest
 from fixtures import Command, EngineOf, strips_of
 from places import SPUR_PAIR
-from scheduling import MANY, DearestFirst, compile_kernels, dearest_first
-from thinned import sort_into_sets
+from sets import MANY, DearestFirst, compile_kernels, dearest_first, sort_into_sets
 
 from tol3d import cli, load_scene
 from tol3d.gearing.engines.fcl import FclEngine

@@ -85,8 +85,16 @@ def test_a_scene_with_other_tolerances_draws_the_same(name: str, entries: tuple[
         assert _same(scene, response, entry, 0.5)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", sorted(bundled_scenes()))
+IN_CI = ("bevel_pair", "every_assembly_field", "every_planetary_field", "reducer_3k_flexible", "tooth_deviations")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(own, marks=pytest.mark.slow if own in IN_CI else pytest.mark.nightly)
+        for own in sorted(bundled_scenes())
+    ],
+)
 def test_every_scene_with_other_tolerances_draws_the_same(name: str) -> None:
     scene = load(name)
     response = response_of(simulation(name))

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from covering import covering
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numba import njit
@@ -23,6 +22,7 @@ from oracles.plain import plain_spur
 from oracles.poses import world_from_gears
 from oracles.random_builds import Builds, Spread, random_builds, searched_spurs
 from scipy.spatial.transform import Rotation
+from sets import covering
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.builds.build import Build

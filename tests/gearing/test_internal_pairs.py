@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from oracles import ring_search
 from oracles.random_builds import Builds, Spread, random_builds
 from oracles.ring_pairs import RingPair
-from thinned import thinned
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
@@ -297,7 +296,7 @@ def seats(builds: Builds, reading: Reading) -> Meshing:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", thinned(PAIRS, 4))
+@pytest.mark.parametrize("name", PAIRS)
 @FLANKS
 @pytest.mark.parametrize("reading", [Reading(), Reading("section", "section")], ids=["face", "section"])
 def test_reading_at_once_equals_reading_by_gaps(name: str, flank: Flank, reading: Reading) -> None:

@@ -14,7 +14,6 @@ import pytest
 from gear_trials import drawn_trials, gear_columns
 from of_kind import known
 from oracles.train import at_height, lean, seen_backward, turned
-from thinned import thinned
 
 import tol3d
 from tol3d.gearing.engines.gaps import exact_engine
@@ -139,7 +138,7 @@ def test_the_hand_s_lean_is_the_oracles() -> None:
     assert np.allclose(lean(low, high, HEIGHTS)[0], [-slope[1], slope[0]])
 
 
-@pytest.mark.parametrize("name", thinned(["lost motion", "first backlash"], 2))
+@pytest.mark.parametrize("name", ["lost motion", "first backlash"])
 @pytest.mark.parametrize("directions", DIRECTIONS)
 def test_mean_and_shares_of_two_bearings_follow_by_hand(directions: str, name: str, tmp_path: Path) -> None:
     """Alone: the variance of means over the other's clearance; what both do together goes to both in equal parts."""
@@ -211,7 +210,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", thinned(CASES, 2))
+@pytest.mark.parametrize("case", CASES)
 def test_a_large_sample_of_either_method_agrees(case: str, tmp_path: Path) -> None:
     """Mean within four standard errors of the sample, sigma too by its own fourth moment, beside what NET allows.
 

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from covering import covering
 from fixtures import strips_of
 from gear_trials import drawn_trials, gear_columns, simulated
 from oracles import brute_force
 from oracles.involute_gear import InvoluteGear
-from thinned import thinned
+from sets import covering
 
 from tol3d import load_scene
 from tol3d.gearing.builds.build import Build
@@ -128,7 +127,7 @@ def test_gears_alike_in_all_but_their_size_read_alike(tmp_path: Path, text: str,
             assert np.abs(seen.fcl[name] - reference.fcl[name]).max() <= (2e-6 + 1e-7 / module) * scale, (module, name)
 
 
-@pytest.mark.parametrize("module", thinned([0.05, 0.1, 20.0], 3))
+@pytest.mark.parametrize("module", [0.05, 0.1, 20.0])
 @pytest.mark.parametrize(("text", "teeth"), [(SPUR, (17, 43)), (BEVEL, (17, 43))])
 def test_deviations_need_not_go_with_the_module(
     tmp_path: Path, text: str, teeth: tuple[int, int], module: float
@@ -180,7 +179,7 @@ def pair_gaps(module: float, flank: Flank) -> tuple[np.ndarray, np.ndarray, floa
 
 
 @pytest.mark.parametrize("flank", [RIGHT, LEFT])
-@pytest.mark.parametrize("module", thinned([0.05, 2.5, 20.0], 3))
+@pytest.mark.parametrize("module", [0.05, 2.5, 20.0])
 def test_tip_edges_are_read_as_right_as_flanks(module: float, flank: Flank) -> None:
     seen, found, chord_error = pair_gaps(module, flank)
     assert np.count_nonzero(found > 0.021) >= 8  # beyond the path of contact: on it there is 0.02 cos 20 deg, 0.019

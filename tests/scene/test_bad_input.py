@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from of_kind import of_kind
 from places import SCENES
 from ruamel.yaml import YAML
-from thinned import thinned
 
 from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
@@ -800,7 +799,7 @@ GROWING: dict[str, Callable[[int], str]] = {
 }
 
 
-@pytest.mark.parametrize("what", thinned(GROWING, 4))
+@pytest.mark.parametrize("what", GROWING)
 def test_the_work_on_a_text_grows_with_its_length_and_no_faster(what: str, tmp_path: Path) -> None:
     """Calls that are made while it is refused, Python's and C's: twice the text, twice the calls at most."""
     path = tmp_path / "scene.yaml"
