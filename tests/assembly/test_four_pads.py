@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from assembly_trials import Assembled, scene_of
+from assembly_trials import Assembled
 from numpy.typing import NDArray
 from places import SCENES
+from scene_texts import scene_of
 from scipy.integrate import quad
 from scipy.stats import norm
 
