@@ -19,6 +19,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from of_kind import known
 from places import SCENES
+from scene_texts import scene_of
 
 from tol3d import Overrides, Scene, load_scene, run_scene
 from tol3d.apps.adjustment import Pieces, ShimPlan, ShimQuestion, Step, Stock, shim_plan, stock_of
@@ -59,9 +60,7 @@ def plan(scene: str = BEVEL, target: float = 24.0, **asked: Any) -> ShimPlan:
 
 
 def written(folder: Path, text: str) -> Scene:
-    path = folder / "scene.yaml"
-    path.write_text(text, "utf-8")
-    return load_scene(path)
+    return scene_of(text, folder)
 
 
 def low_of(scene: Scene, folder: Path, measure: str = "normal backlash") -> float:

@@ -6,7 +6,7 @@ import pytest
 from assembly_trials import assembled
 from fixtures import Command
 from places import SCENES
-from scene_texts import refusal
+from scene_texts import refusal, written
 
 COVER = (SCENES / "cover_on_base.yaml").read_text("utf-8")
 TOLERANCES, MEASURES = "\ntolerances:\n", "\nmeasures:\n"
@@ -66,8 +66,7 @@ def test_a_measure_of_a_forgotten_move_names_the_part_that_it_would_place(measur
 
 
 def test_a_nominal_out_of_limits_is_shown_by_check(tol3d: Command, tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(COVER.replace("lower_limit: -0.15 mm, upper_limit: 0.15 mm", "lower_limit: 54.85 mm", 1), "utf-8")
+    path = written(COVER.replace("lower_limit: -0.15 mm, upper_limit: 0.15 mm", "lower_limit: 54.85 mm", 1), tmp_path)
     code, out, _ = tol3d("check", str(path))
     assert code == 0
     joined = " ".join(out.split())

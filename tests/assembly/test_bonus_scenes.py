@@ -9,7 +9,7 @@ import pytest
 from assembly_trials import assembled
 from fixtures import Command
 from numpy.typing import NDArray
-from scene_texts import refusal
+from scene_texts import refusal, written
 from scipy import integrate
 from scipy.stats import norm
 
@@ -264,8 +264,7 @@ def test_the_width_of_a_slot_widens_its_zone_too(tmp_path: Path, tab: str, grows
 
 
 def test_a_run_says_which_model_it_is(tol3d: Command, tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(zoned(), "utf-8")
+    path = written(zoned(), tmp_path)
     code, out, _ = tol3d("run", str(path), "-v", "--trials", "500", "--no-picture", "--out", str(tmp_path / "run"))
     assert code == 0
     words = "uniform in its zone, widened by the bonus of bore size"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from assembly_trials import assembled
 from numpy.typing import NDArray
-from scene_texts import refusal
+from scene_texts import refusal, written
 from scipy import integrate
 
 from tol3d.assembly.model.statuses import NO_BUILD, OK
@@ -176,8 +176,7 @@ def test_parts_alike_have_gauges_of_their_own(tmp_path: Path) -> None:
 
 
 def test_workers_and_replays_change_no_bit(tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(scene(law="{kind: uniform}"), "utf-8")
+    path = written(scene(law="{kind: uniform}"), tmp_path)
     names = (f"{SHIFT}.x [um]", "geometric:inspected", "analytic:one along y")
     runs = [
         run_scene(path, overrides=Overrides(trials=2_000), out=tmp_path / f"{k}", execution=Execution(workers=k))

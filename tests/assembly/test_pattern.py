@@ -285,9 +285,7 @@ def test_two_plates_whose_faces_do_not_meet(tmp_path: Path) -> None:
     By second order they differ: squares of slopes of 2e-3 over 100 mm.
     """
     text = (SCENES / "two_plates.yaml").read_text("utf-8")
-    path = tmp_path / "plates.yaml"
-    path.write_text(text[: text.index("    relations:")] + text[text.index("    pairs:") :], "utf-8")
-    plates = Assembled(simulation_of(load(path), Overrides()))
+    plates = assembled(text[: text.index("    relations:")] + text[text.index("    pairs:") :], tmp_path)
     rows = drawn(plates.simulation, 0, 1000).deviations
     slack = read(plates, rows)["slack"]
     np.testing.assert_allclose(read(plates, rows, "analytic")["slack"], slack, atol=4e-4)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from places import SCENES
+from scene_texts import written
 
 from tol3d import Overrides, Run, SceneError, load_scene, run_scene
 from tol3d.gearing.cycloid.from_scene import rv_system
@@ -20,9 +21,7 @@ def changed(tmp_path: Path, *changes: tuple[str, str]) -> Path:
     for old, new in changes:
         assert re.search(old, text), old
         text = re.sub(old, new, text)
-    path = tmp_path / "scene.yaml"
-    path.write_text(text, "utf-8")
-    return path
+    return written(text, tmp_path)
 
 
 REFUSED = {
@@ -193,9 +192,7 @@ def bare(tmp_path: Path, discs: int, carrier: bool) -> Path:
     )
     if not carrier:
         text = text.replace("scale: 0.83333333 um", "scale: 0.00000001 um")
-    path = tmp_path / "scene.yaml"
-    path.write_text(text.replace("discs: 2", f"discs: {discs}"), "utf-8")
-    return path
+    return written(text.replace("discs: 2", f"discs: {discs}"), tmp_path)
 
 
 @pytest.mark.slow

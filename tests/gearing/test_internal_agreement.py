@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gear_trials import drawn_trials, gear_columns
-from scene_texts import refusal
+from scene_texts import refusal, scene_of
 
-from tol3d import load_scene
 from tol3d.errors import SceneError
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Model
@@ -49,9 +48,7 @@ TILTS = f"""  in plane: {{kind: axis_in_plane, of: pair, {NORMAL}}}
 
 
 def model_of(folder: Path, text: str) -> Model:
-    path = folder / "scene.yaml"
-    path.write_text(text, "utf-8")
-    return gear_model(gear_system(load_scene(path)))
+    return gear_model(gear_system(scene_of(text, folder)))
 
 
 def differences(model: Model, size: float) -> dict[str, float]:

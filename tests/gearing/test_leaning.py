@@ -14,6 +14,7 @@ import pytest
 from gear_trials import drawn_trials, gear_columns
 from of_kind import known
 from oracles.train import at_height, lean, seen_backward, turned
+from scene_texts import scene_of
 
 import tol3d
 from tol3d.gearing.engines.gaps import exact_engine
@@ -343,8 +344,7 @@ def test_random_shafts_have_the_closed_form_of_their_samples(tmp_path: Path) -> 
     """
     off = []
     for seed in range(SHAFTS):
-        (tmp_path / "shaft.yaml").write_text(random_shaft(seed), "utf-8")
-        model = model_from_scene(tol3d.load_scene(tmp_path / "shaft.yaml"))
+        model = model_from_scene(scene_of(random_shaft(seed), tmp_path))
         block = drawn_trials(model, seed, 0, MANY)
         for measure in model.measures:
             form, values = form_of(model, measure.name), analytic_values(model, measure, block)[:, 0]

@@ -14,6 +14,7 @@ import pytest
 from gear_trials import drawn_trials, gear_columns
 from oracles.train import robot_lost_motion, table_lost_motion
 from places import SCENES
+from scene_texts import scene_of
 
 from tol3d import load_scene
 from tol3d.gearing.builds.build import build
@@ -44,9 +45,7 @@ def without(text: str, *names: str) -> str:
 
 
 def model_of(folder: Path, text: str) -> Model:
-    path = folder / "scene.yaml"
-    path.write_text(text, encoding="utf-8")
-    return model_from_scene(load_scene(path))
+    return model_from_scene(scene_of(text, folder))
 
 
 @pytest.fixture(scope="module")

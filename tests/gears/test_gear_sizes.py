@@ -12,9 +12,9 @@ from fixtures import strips_of
 from gear_trials import drawn_trials, gear_columns, simulated
 from oracles import brute_force
 from oracles.involute_gear import InvoluteGear
+from scene_texts import scene_of, written
 from sets import covering
 
-from tol3d import load_scene
 from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.engines.gaps import exact_engine
@@ -69,9 +69,7 @@ def model_of(folder: Path, text: str, module: float, teeth: tuple[int, int], gra
     scene = text.format(**numbers, **shifts, n=trials)
     for gear in ("driver", "driven"):
         scene += THINNED.format(of=gear, t=20 * grade, s=grade)
-    path = folder / "scene.yaml"
-    path.write_text(scene, "utf-8")
-    return model_from_scene(load_scene(path))
+    return model_from_scene(scene_of(scene, folder))
 
 
 @dataclass(frozen=True)
@@ -204,9 +202,7 @@ study: {{trials: 300, seed: 1, engine: exact, witness: 100}}
 @pytest.mark.parametrize("tooth", ["driver", "all"])
 def test_a_witness_of_edges_is_content(tmp_path: Path, tooth: str) -> None:
     """A pair so far shifted that tips reach far down their mates' flanks."""
-    path = tmp_path / "scene.yaml"
-    path.write_text(ONE_TOOTH.format(tooth=tooth, face="face_width: 10 mm"), "utf-8")
-    model = simulation_of(load_scene(path))
+    model = simulation_of(scene_of(ONE_TOOTH.format(tooth=tooth, face="face_width: 10 mm"), tmp_path))
     witness = witness_summary(model, model.system.method("exact", None), model.study.trials)
     own = witness["measures"]["one tooth"]
     assert own["compared"] > 10
@@ -248,8 +244,7 @@ def test_each_mesh_of_a_train_has_the_bound_of_its_own_gears(tmp_path: Path) -> 
         "  large gap: {kind: normal_backlash, of: large}\n"
         "study: {trials: 30, seed: 1, engine: exact, witness: 30}\n"
     )
-    path = tmp_path / "scene.yaml"
-    path.write_text(scene, "utf-8")
+    path = written(scene, tmp_path)
     run = run_scene(path, out=tmp_path / "run")
     small, large = (run.summary["witness"]["measures"][name] for name in ("small gap", "large gap"))
     assert run.summary["witness"]["chord_error_um"] * 4 == pytest.approx(large["expected_at_most"])

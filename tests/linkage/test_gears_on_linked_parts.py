@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from machine.housed import ALONG, APART, GEARS, SHAFTS, plain_scene
+from scene_texts import scene_of
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
 
@@ -60,9 +61,7 @@ study: {{trials: 500}}
 
 def test_a_longer_rod_pushes_the_wheel_towards_the_pinion(tmp_path: Path) -> None:
     """The rod hangs on a point beyond the wheel: what it is longer, the centre distance is less."""
-    place = tmp_path / "scene.yaml"
-    place.write_text(SCENE, "utf-8")
-    run = run_scene(load_scene(place), overrides=Overrides(trials=500), out=tmp_path / "run")
+    run = run_scene(scene_of(SCENE, tmp_path), overrides=Overrides(trials=500), out=tmp_path / "run")
     own = run.summary["measures"]["backlash"]
     assert own["agreement"]["explanation"]["faults"] == []
     assert own["status"]["does not close"] == 0

@@ -106,7 +106,7 @@ def test_pins_of_a_plate_are_pins_of_planets(method: str, tmp_path: Path) -> Non
     pins = {f"outwards.planet {k + 1}": of[f"outwards.planet {k + 1}"] + radial[k] for k in range(3)}
     pins |= {f"round.planet {k + 1}": of[f"round.planet {k + 1}"] + tangential[k] for k in range(3)}
     found = values(gearbox_of(drawn(ALONE, RADIUS), tmp_path), method, of | of_plate(*own), turns)
-    alone = system_of(ALONE, tmp_path, "alone")
+    alone = system_of(ALONE, tmp_path)
     wanted, without = values(alone, method, of | pins, turns), values(alone, method, of, turns)
     assert np.ptp(wanted["lost motion"] - without["lost motion"]) > 1e-5
     np.testing.assert_allclose(found["lost motion"], wanted["lost motion"], rtol=0, atol=1e-12)
@@ -123,7 +123,7 @@ def test_holes_of_a_plate_are_holes_of_an_rv_reducer_s_carrier(method: str, tmp_
     holes = {f"holes.hole {k + 1} x": around[k].real for k in range(3)}
     holes |= {f"holes.hole {k + 1} y": around[k].imag for k in range(3)}
     found = values(gearbox_of(drawn(OF_RV, 15.0), tmp_path), method, of | of_plate(*own), turns)
-    alone = system_of(text, tmp_path, "alone")
+    alone = system_of(text, tmp_path)
     wanted, without = values(alone, method, of | holes, turns), values(alone, method, of, turns)
     assert np.ptp(wanted["lost motion"] - without["lost motion"]) > 1e-5
     np.testing.assert_allclose(found["lost motion"], wanted["lost motion"], rtol=0, atol=1e-12)

@@ -191,7 +191,7 @@ measures:
     of = {name: own for name, own in of.items() if not name.endswith((" x", " y"))}
     housed = gearbox_of(scene(over=", over: {at: 100 deg}"), tmp_path)
     found = values(housed, method, of, turns)["lost motion"]
-    wanted = values(system_of(alone, tmp_path, "alone"), method, of, turns)["lost motion"]
+    wanted = values(system_of(alone, tmp_path), method, of, turns)["lost motion"]
     assert np.ptp(wanted) > 1e-4
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12)
 

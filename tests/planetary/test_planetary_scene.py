@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from places import SCENES
 from rich.console import Console
-from scene_texts import Edit, edited, refusal
+from scene_texts import Edit, edited, refusal, scene_of, written
 
 from tol3d import Overrides, load_scene, replay, run_scene
 from tol3d.gearing.planetary.first_order.stack_up import StackUp
@@ -136,9 +136,7 @@ REFUSED = {
 
 
 def system_of(folder: Path, text: str) -> PlanetarySystem:
-    path = folder / "scene.yaml"
-    path.write_text(text, "utf-8")
-    return planetary_system(load_scene(path))
+    return planetary_system(scene_of(text, folder))
 
 
 @pytest.mark.parametrize(("change", "said"), REFUSED.values(), ids=REFUSED.keys())
@@ -175,8 +173,7 @@ def test_an_eccentric_ring_that_binds_the_planets_at_the_mean_build_is_refused(t
 @pytest.mark.slow
 def test_trials_that_bind_keep_their_rows(tmp_path: Path) -> None:
     """Pins that lie 60 um off at random bind some planets of most trials, and a column says by how much."""
-    path = tmp_path / "scene.yaml"
-    path.write_text(TEXT.replace("lower: -6 um, upper: 6 um", "lower: -60 um, upper: 60 um"), "utf-8")
+    path = written(TEXT.replace("lower: -6 um, upper: 6 um", "lower: -60 um, upper: 60 um"), tmp_path)
     run = run_scene(path, overrides=Overrides(trials=100), out=tmp_path / "run")
     counts = run.summary["measures"]["lost motion"]["status"]
     assert counts["ok"] + counts["interferes"] == 100

@@ -15,7 +15,7 @@ from fixtures import Command
 from places import SCENES
 from rich.console import Console
 from ruamel.yaml import YAML
-from scene_texts import edited, refusal
+from scene_texts import edited, refusal, written
 
 from tol3d import InputError, Overrides, run_scene
 from tol3d.report import check_report, run_report
@@ -89,8 +89,7 @@ def test_an_absurd_number_is_refused_or_checked(name: str, share: float, tmp_pat
         shutil.copy(file, tmp_path)
     said, checked = [], 0
     for _, _, text in made_absurd(name, share):
-        scene = tmp_path / "scene.yaml"
-        scene.write_text(text, "utf-8")
+        scene = written(text, tmp_path)
         try:
             printed(check_report(simulation_of(load(scene))))
             checked += 1
@@ -122,8 +121,7 @@ def test_directions_of_any_length_mean_the_same(tmp_path: Path) -> None:
     found = {}
     for length in (1.0, 3e155, 7e-200):
         words = {name: str([length * number for number in direction]) for name, direction in DIRECTIONS.items()}
-        scene = tmp_path / "scene.yaml"
-        scene.write_text(TILTED.format(**words), "utf-8")
+        scene = written(TILTED.format(**words), tmp_path)
         found[length] = run_scene(scene, out=tmp_path / f"{length}").columns()
     # the height's deviation is along z, of which the measure's direction has 0.8; -1 to 3 um, mean 1 um
     rise = found[1.0]["geometric:rise"]
@@ -143,8 +141,7 @@ def test_an_absurd_number_is_refused_or_simulated(name: str, engine: str, tmp_pa
         shutil.copy(file, tmp_path)
     simulated = 0
     for _, _, text in made_absurd(name, 0.2):
-        scene = tmp_path / "scene.yaml"
-        scene.write_text(text, "utf-8")
+        scene = written(text, tmp_path)
         study = Overrides(trials=3, engine=engine, witness=0)
         try:
             run = run_scene(scene, overrides=study, out=tmp_path / "run", force=True)

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from of_kind import of_kind
 from places import SCENES
 from ruamel.yaml import YAML
+from scene_texts import scene_of, written
 
 from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
@@ -627,8 +628,7 @@ def test_what_makes_no_train_is_said_once_with_its_line_and_place(
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new, 1)
-    path = tmp_path / "scene.yaml"
-    path.write_text(text, encoding="utf-8")
+    path = written(text, tmp_path)
     with pytest.raises(SceneError) as caught:
         model_from_scene(load_scene(path))
     (said,) = caught.value.problems
@@ -930,9 +930,8 @@ def test_slips_of_the_field_are_told_by_file_and_by_python(
     tmp_path: Path, at: str, kind: str, law: str, expected: str
 ) -> None:
     text = COMMAS.format(at=at, kind=kind, law=law)
-    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
     with pytest.raises(SceneError) as of_file:
-        load_scene(tmp_path / "scene.yaml")
+        scene_of(text, tmp_path)
     assert expected in str(of_file.value)
     with pytest.raises(SceneError) as of_python:
         Scene.model_validate(YAML(typ="safe").load(text))

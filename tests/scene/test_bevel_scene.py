@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gear_trials import model_of_scene
+from scene_texts import scene_of
 
-from tol3d import Overrides, SceneError, load_scene, run_scene
+from tol3d import Overrides, SceneError, run_scene
 from tol3d.gearing.builds.build import build
 from tol3d.gearing.model import Model, model_from_scene
 
@@ -152,8 +153,7 @@ MOVES = {
 def test_a_tolerance_moves_what_it_says(name: str, tmp_path: Path) -> None:
     kind, value, shifts, turns = MOVES[name]
     text = SCENE.replace(OTHER, f"kind: {kind}, distribution: {{kind: constant, value: {value}}}")
-    (tmp_path / "scene.yaml").write_text(text, "utf-8")
-    model = model_from_scene(load_scene(tmp_path / "scene.yaml"))
+    model = model_from_scene(scene_of(text, tmp_path))
     row = np.array([[contributor.distribution.mean for contributor in model.contributors]])
     made = build(model, row)
     for k, rest in enumerate((np.eye(3), REST)):

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_texts import scene_of
 
-from tol3d import load_scene, open_run, replay, run_scene
+from tol3d import open_run, replay, run_scene
 from tol3d.errors import RunError, SceneError
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.study.execution.pools import Execution
@@ -37,8 +38,7 @@ ROWS = [f"{k},{side},{k}.{n}" for n, side in enumerate(("right", "left")) for k 
 
 def model(folder: Path, entry: str, lines: Sequence[str]) -> Model:
     (folder / "teeth.csv").write_text("\n".join(lines) + "\n", "utf-8")
-    (folder / "scene.yaml").write_text(SCENE.format(entry=entry), "utf-8")
-    return model_from_scene(load_scene(folder / "scene.yaml"))
+    return model_from_scene(scene_of(SCENE.format(entry=entry), folder))
 
 
 def given_um(folder: Path, entry: str, lines: Sequence[str]) -> list[float]:
@@ -137,9 +137,8 @@ def test_what_is_wrong_is_said_with_its_place(entry: str, lines: Sequence[str], 
 
 
 def test_a_file_that_is_missing_is_named_at_its_place(tmp_path: Path) -> None:
-    (tmp_path / "scene.yaml").write_text(SCENE.format(entry=SLOPE), "utf-8")
     with pytest.raises(SceneError, match=r"tolerances\.teeth\.law\.file: .*teeth\.csv"):
-        load_scene(tmp_path / "scene.yaml")
+        scene_of(SCENE.format(entry=SLOPE), tmp_path)
 
 
 @pytest.mark.slow

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
+from scene_texts import scene_of
 
-from tol3d import load_scene
 from tol3d.errors import SceneError
 from tol3d.gearing.system import gear_system
 
@@ -29,10 +29,8 @@ FORM = "kind: profile_form, of: pinion, flanks: each, each: tooth, limits: {iso_
 
 
 def refused(folder: Path, tolerances: str, gears: str = SPUR) -> str:
-    path = folder / "scene.yaml"
-    path.write_text(f"scene: teeth\nparts:{gears}{REST}{tolerances}\n", "utf-8")
     with pytest.raises(SceneError) as found:
-        gear_system(load_scene(path))
+        gear_system(scene_of(f"scene: teeth\nparts:{gears}{REST}{tolerances}\n", folder))
     return str(found.value)
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from fixtures import Command
-from scene_texts import scene_of
+from scene_texts import scene_of, written
 
 from tol3d import InputError
 from tol3d.analyses.allocation import allocation
@@ -80,9 +80,7 @@ def included(folder: Path, without: str = "", own: str = "") -> Path:
     (folder / "parts" / "pair.yaml").write_text(pair, "utf-8")
     third = f"  top: {{file: parts/ring.yaml, at: [0 mm, 0 mm, 20 mm]{without}}}\n"
     text = f"scene: included\ninclude:\n  both: parts/pair.yaml\n{third}parts:\n{BASE}tolerances:\n{FLATNESS}{own}"
-    path = folder / "scene.yaml"
-    path.write_text(text + pile(["both low ring", "both high ring", "top ring"]), "utf-8")
-    return path
+    return written(text + pile(["both low ring", "both high ring", "top ring"]), folder)
 
 
 def halved(response: Response, line: str) -> float:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from places import TESTS
 from printing import printed
 from runs.test_kill import HANGS, SMALL_BLOCKS
+from scene_texts import scene_of
 from schemas import validate
 from scipy import integrate, stats
 from toys.parabola import PARABOLA, methods
@@ -467,9 +468,8 @@ def test_a_system_from_outside_has_figures_of_its_own_sections_published(run: Ru
         (("share_percent: 3", "share_percents: 3"), 'unknown key "share_percents"; did you mean "share_percent"?'),
     ):
         assert change[0] in text
-        (tmp_path / "spring.yaml").write_text(text.replace(*change), "utf-8")
         with pytest.raises(SceneError, match=re.escape(words)):
-            load_scene(tmp_path / "spring.yaml")
+            scene_of(text.replace(*change), tmp_path)
 
 
 # what is refused ------------------------------------------------------------------------------------
