@@ -18,9 +18,12 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 from assembly import test_pattern_datums, test_together
+from assembly.framed_parts import MOVES, scene
 from assembly.placing.one_sided_parts import random_contacts, random_pads
 from assembly.placing.test_best_fitting import fitted, random_points
 from assembly.placing.test_locating import random_move
+from assembly.plates_with_pins import plates
+from assembly.random_touches import KINDS, random_touch
 from assembly.test_bolts import FOUR, TWO, joint
 from assembly.test_gauged_pattern import holes
 from assembly.test_gauged_rooms import FRAMES as GAUGED
@@ -39,11 +42,8 @@ from assembly.test_shifted_coordinates import FRAMES as DATUMS
 from assembly.test_tied_patterns import PUSHED, cover
 from assembly.test_virtual_clearance import LEANING, sheets
 from assembly_trials import Assembled, assembled
-from framed_parts import MOVES, scene
 from numpy.typing import NDArray
 from places import SCENES, TESTS
-from plates_with_pins import plates
-from random_touches import KINDS, random_touch
 from scipy.spatial.transform import Rotation
 from shipped import shipped
 

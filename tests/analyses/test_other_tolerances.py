@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from linear_stacks import stack
+from analyses.linear_stacks import stack
 
 from tol3d import InputError
 from tol3d.analyses.response import Response, response_of

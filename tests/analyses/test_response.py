@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from linear_stacks import stack
+from analyses.linear_stacks import stack
 from scipy.stats import ks_2samp, norm
 
 from tol3d import InputError, Overrides, run_scene

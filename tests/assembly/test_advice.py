@@ -84,7 +84,7 @@ def test_a_nominal_out_of_limits_is_shown_by_check(tol3d: Command, tmp_path: Pat
         ("{kind: constant, value: 8 mm}", "smaller than the nominal 8 mm, got up to 8 mm; state the deviation"),
     ],
 )
-def test_a_size_as_large_as_the_feature_is_refusal(law: str, words: str, tmp_path: Path) -> None:
+def test_a_size_as_large_as_the_feature_is_refused(law: str, words: str, tmp_path: Path) -> None:
     size = "  bore: {{kind: size, of: base.hole, distribution: {}}}\n"
     found = refusal(added(TOLERANCES, size.format(law)), tmp_path)
     assert f"tolerances.bore.distribution: expected deviations {words}" in found

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.drafts import Draft, displacement
 from assembly_trials import assembled
-from drafts import Draft, displacement
 from scene_texts import refusal
 
 from tol3d.assembly.model import Datum, Fix

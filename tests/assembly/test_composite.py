@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.composite_plate import columns, plate
 from assembly_trials import Assembled, assembled
-from composite_plate import columns, plate
 from numpy.typing import NDArray
 from of_kind import known, of_kind
 from scene_texts import Edit, edited, refusal, scene_of

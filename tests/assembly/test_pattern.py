@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.plates_with_pins import deviations, made, plates
 from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
 from places import SCENES
-from plates_with_pins import deviations, made, plates
 from scipy.optimize import linprog, nnls
 from scipy.stats import norm
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.drafts import Draft, displacement, frame
 from assembly_trials import assembled
-from drafts import Draft, displacement, frame
 from numpy.typing import NDArray
 from scene_texts import refusal
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from assembly.plates_with_pins import plates
 from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
 from places import SCENES
-from plates_with_pins import plates
 from scene_texts import Edit, edited, refusal
 from scipy.optimize import brentq
 from scipy.stats import norm

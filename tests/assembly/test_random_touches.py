@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from assembly.random_touches import KINDS, RandomTouch, random_touch
 from numpy.typing import NDArray
-from random_touches import KINDS, RandomTouch, random_touch
 
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
 from tol3d.assembly.placing import method as placing

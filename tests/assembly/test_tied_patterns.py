@@ -13,8 +13,8 @@ from assembly.placing.built_by_numbers import posed
 from assembly.placing.one_sided_parts import pads
 from assembly.test_shifted_coordinates import askew
 from assembly_trials import Assembled, assembled
-from cutting_planes import cut
 from numpy.typing import NDArray
+from oracles.cutting_planes import cut
 
 from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
 from tol3d.assembly.placing import method as placing

@@ -3,9 +3,9 @@
 import math
 from pathlib import Path
 
-import deviating_pair
 import numpy as np
 import pytest
+from gearing import deviating_pair
 from numpy.typing import NDArray
 from oracles.deviated_flanks import DeviatedGear, DeviatedPair, active_rolls, between
 from scene_texts import scene_of

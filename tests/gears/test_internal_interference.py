@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from internal_pairs import outline, random_pair
+from gears.internal_pairs import outline, random_pair
 from oracles.ring_overlap import overlap
 
 from tol3d.errors import GeometryError

@@ -13,7 +13,7 @@ import yaml
 from assembly_trials import Assembled
 from fixtures import Command
 from places import ROOT, SCENES
-from scene_schema import judged
+from scene.scene_schema import judged
 
 from tol3d import Overrides, RunError
 from tol3d.errors import SceneError

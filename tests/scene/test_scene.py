@@ -21,7 +21,7 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 from said_fields import fields_said, fields_within, unsaid
-from scene_schema import judged
+from scene.scene_schema import judged
 from scene_texts import written
 
 from tol3d import Scene, load_scene

@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 from guides import quoted, text_of
 from of_kind import of_kind
-from scene_schema import judged
+from scene.scene_schema import judged
 
 from tol3d import Scene, load_scene
 from tol3d.errors import SceneError

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from limit_states import Formula, Value
+from oracles.limit_states import Formula, Value
 from printing import printed
 from scene_texts import scene_of
 from scipy.integrate import quad

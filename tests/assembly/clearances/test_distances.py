@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshed import ball, block, tube
+from assembly.clearances.meshed import ball, block, tube
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 from scipy.spatial.transform import Rotation

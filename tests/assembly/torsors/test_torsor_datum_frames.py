@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from drafts import Draft, displacement, frame
+from assembly.drafts import Draft, displacement, frame
 from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.measures.gap import GapSpec

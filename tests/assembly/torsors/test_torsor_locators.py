@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from drafts import Draft, Vector, displacement, frame, moved_as_a_whole, turned
+from assembly.drafts import Draft, Vector, displacement, frame, moved_as_a_whole, turned
 from numpy.typing import NDArray
-from rigid_parts import RigidParts, directional
+from oracles.rigid_parts import RigidParts, directional
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Move, Pair, Weld

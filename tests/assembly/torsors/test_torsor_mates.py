@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from drafts import Draft, Vector, displacement, frame, turned
+from assembly.drafts import Draft, Vector, displacement, frame, turned
 from numpy.typing import NDArray
-from rigid_parts import Poses, RigidParts, directional
+from oracles.rigid_parts import Poses, RigidParts, directional
 
 from tol3d.assembly.grammar.measures.inspected import InspectedSizeSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Mate, Measured, Plane, Relation
