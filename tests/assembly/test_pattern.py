@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from assembly.plates_with_pins import deviations, made, plates
+from assembly.plates_with_pins import deviations, made, pinned_plates
 from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
 from places import SCENES
+from scene_texts import edited
 from scipy.optimize import linprog, nnls
 from scipy.stats import norm
 
@@ -109,7 +110,8 @@ def test_holes_that_are_drawn_further_apart_than_their_pins_take_half_of_that_fr
     tmp_path: Path, method: str
 ) -> None:
     """0.1 mm of 80: of both clearances of 75 um on the radius 50 are gone before anything deviates."""
-    text = plates(TWO, 10.15, 10.0).replace("hole 1: {kind: cylinder, at: [80.0", "hole 1: {kind: cylinder, at: [80.1")
+    there = "hole 1: {kind: cylinder, at: [80."
+    text = edited(pinned_plates(TWO, 10.15, 10.0), (f"{there}0", f"{there}1"))
     own = assembled(text, tmp_path)
     slack = read(own, np.zeros((1, own.system.assembly.width)), method)["slack"]
     assert slack[0] == pytest.approx(0.025, abs=1e-9)
