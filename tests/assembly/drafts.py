@@ -20,6 +20,7 @@ from tol3d.assembly.model import (
     Point,
     Shape,
 )
+from tol3d.assembly.torsors.method import slopes
 
 Array = NDArray[np.float64]
 Vector = Sequence[float] | Array
@@ -109,3 +110,8 @@ def moved_as_a_whole(assembly: Assembly, pose: Array) -> Assembly:
 def displacement(name: str, along: Vector, start: str) -> Measured:
     """Displacement of a feature from another along a direction that is fixed in that one's part."""
     return Measured(GapSpec.reads, (start, name), np.asarray(along, float))
+
+
+def coefficients(assembly: Assembly, name: str) -> Array:
+    """Slopes of a measure by the columns of deviations."""
+    return slopes(assembly, name, np.zeros(assembly.width), np.ones(assembly.width)).coefficients

@@ -20,7 +20,7 @@ from oracles import brute_force, exact_eccentric, search
 from oracles.involute_gear import InvoluteGear
 from oracles.plain import plain_spur
 from oracles.poses import world_from_gears
-from oracles.random_builds import Builds, Spread, random_builds, searched_spurs
+from oracles.random_builds import Builds, Spread, random_builds, searched_spurs, within_reach_of
 from scipy.spatial.transform import Rotation
 from sets import covering
 
@@ -104,15 +104,6 @@ def _gear(teeth: int, module: float, alpha: float, face: float, shift: float) ->
     except GeometryError:
         assume(False)
         raise
-
-
-def within_reach_of(pair: SpurPair, spread: Spread) -> Spread:
-    """A spread that leaves room to the end of the range in which candidate teeth are known, small modules included."""
-    reach = 0.15 * pair.pinion.base_pitch * math.sin(pair.working_pressure_angle)
-    wide = max(pair.pinion.face_width, pair.wheel.face_width) / 2
-    asked = 2 * (spread.shift + math.sqrt(2) * spread.centre + spread.tilt * wide)
-    less = min(1.0, 0.7 * reach / asked)
-    return replace(spread, tilt=less * spread.tilt, shift=less * spread.shift, centre=less * spread.centre)
 
 
 def read(builds: Builds, reading: Reading = WHOLE_FACE) -> MeshReading:

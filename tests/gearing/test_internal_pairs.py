@@ -10,7 +10,7 @@ from fixtures import EngineOf
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import ring_search
-from oracles.random_builds import Builds, Spread, random_builds
+from oracles.random_builds import Builds, Spread, random_builds, within_reach_of
 from oracles.ring_pairs import RingPair
 
 from tol3d.errors import GeometryError
@@ -88,15 +88,6 @@ def internal_pairs(draw: st.DrawFn) -> InternalPair:
     except GeometryError:
         assume(False)
         raise
-
-
-def within_reach_of(pair: InternalPair, spread: Spread) -> Spread:
-    """A spread that leaves room to the end of the range in which candidate teeth are known."""
-    reach = 0.15 * pair.pinion.base_pitch * math.sin(pair.working_pressure_angle)
-    wide = max(pair.pinion.face_width, pair.wheel.face_width) / 2
-    asked = 2 * (spread.shift + math.sqrt(2) * spread.centre + spread.tilt * wide)
-    less = min(1.0, 0.7 * reach / asked)
-    return replace(spread, tilt=less * spread.tilt, shift=less * spread.shift, centre=less * spread.centre)
 
 
 def read(builds: Builds, reading: Reading | None = None) -> MeshReading:

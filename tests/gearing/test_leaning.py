@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gear_trials import drawn_trials, gear_columns
+from gear_trials import drawn_trials, form_of, gear_columns, measure_of
 from of_kind import known
 from oracles.train import at_height, lean, seen_backward, turned
 from scene_texts import scene_of
@@ -19,14 +19,13 @@ from scene_texts import scene_of
 import tol3d
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.methods.analytic import analytic_values
-from tol3d.gearing.model import Measure, Model, Reading, model_from_scene
+from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gearing.slopes.coefficients import coefficients_of
-from tol3d.gearing.stack_up import closed_form, stack_of
+from tol3d.gearing.stack_up import stack_of
 from tol3d.gearing.stack_up.leaning import leaning_shares
 from tol3d.gearing.system import GearSystem
 from tol3d.statistics.estimates.variance_shares import RegressorSums, shares
 from tol3d.study.effects.regressors import regressor_groups, regressors
-from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.trials.simulation import Simulation
 from tol3d.study.trials.study import Study
 
@@ -78,16 +77,6 @@ def model_of(folder: Path, low: str, high: str, more: str = "") -> Model:
 def fixed(folder: Path, name: str) -> Model:
     low, high = DIRECTIONS[name]
     return model_of(folder, f"{{at: {low} deg}}", f"{{at: {high} deg}}")
-
-
-def measure_of(model: Model, name: str) -> Measure:
-    return next(measure for measure in model.measures if measure.name == name)
-
-
-def form_of(model: Model, name: str) -> ClosedForm:
-    form = closed_form(model, measure_of(model, name))
-    assert form is not None
-    return form
 
 
 # by hand ------------------------------------------------------------------------------------------------------

@@ -19,6 +19,7 @@ from foreign_parts import (
     step_file,
     turned,
 )
+from nist import references
 
 from tol3d.assembly.grammar.features import ConeSpec
 from tol3d.assembly.grammar.features.selector import SelectorSpec
@@ -205,10 +206,6 @@ def instances(content: FileContent) -> dict[int, str]:
 
 def numbers_of(body: str) -> list[float]:
     return [float(own) for own in re.findall(r"(?<![#\w'])-?\d+\.\d*(?:E[-+]?\d+)?", body)]
-
-
-def references(body: str) -> list[int]:
-    return [int(own) for own in re.findall(r"#(\d+)", body)]
 
 
 @pytest.mark.parametrize("model", MODELS)
