@@ -168,8 +168,7 @@ SCOPED = ("spur_pair", "bolted_cover", "three_stage_train")
 
 
 @pytest.mark.parametrize(
-    "name",
-    [own if own in SCOPED else pytest.param(own, marks=pytest.mark.slow) for own in sorted(bundled_scenes())],
+    "name", [own if own in SCOPED else pytest.param(own, marks=pytest.mark.slow) for own in sorted(bundled_scenes())]
 )
 def test_a_scope_offers_what_scaling_accepts_and_ends_where_it_refuses(name: str) -> None:
     """Every contributor: its ends and factors between them, and just beyond and farther, by `scaled` alone."""

@@ -8,18 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
-from tol3d.assembly.model import (
-    Assembly,
-    Contribution,
-    Datum,
-    DatumFrame,
-    Feature,
-    Measured,
-    Move,
-    Part,
-    Point,
-    Shape,
-)
+from tol3d.assembly.model import Assembly, Contribution, Datum, DatumFrame, Feature, Measured, Move, Part, Point, Shape
 from tol3d.assembly.torsors.method import slopes
 
 Array = NDArray[np.float64]

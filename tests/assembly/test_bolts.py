@@ -242,10 +242,7 @@ def test_a_run_with_a_screw_has_two_thirds_of_its_variance_by_the_screw(tmp_path
 
 @pytest.mark.parametrize(
     ("at", "floating", "zones", "trial"),
-    [
-        (FOUR, "{kind: centred}", False, 120),
-        (TWO, "{kind: toward, along: [1, 0, 0], at: cover.hole 0}", True, 137),
-    ],
+    [(FOUR, "{kind: centred}", False, 120), (TWO, "{kind: toward, along: [1, 0, 0], at: cover.hole 0}", True, 137)],
     ids=["centred", "pushed"],
 )
 def test_a_cover_rests_within_ten_poses_though_a_bolt_is_free_to_lean(

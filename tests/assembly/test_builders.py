@@ -174,11 +174,7 @@ WRONG_LINKAGES = {
         "parts.rod 2.builder: a rod of 18 mm is not thinner than its balls of 16 mm",
     ),
     "no ring of teeth": ("reach: 95 deg", "reach: 10 deg", "no ring of teeth ends within a reach of 10 deg"),
-    "two teeth": (
-        "teeth: 25, module",
-        "teeth: 2, module",
-        "gear 1.builder.teeth: expected a number of at least 3",
-    ),
+    "two teeth": ("teeth: 25, module", "teeth: 2, module", "gear 1.builder.teeth: expected a number of at least 3"),
     "another pole": ("pole: tooth", "pole: flank", "parts.gear 1.builder.pole: expected tooth or space"),
     "a place off its seat": (
         "at: [32 mm, 0 mm, 24 mm]",

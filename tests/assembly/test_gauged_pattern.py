@@ -260,11 +260,7 @@ WRONG = {
         "free",
         "expected shift, for all features lie on one axis; got shift_and_turn",
     ),
-    "no freedom": (
-        (f", {FREE}", ""),
-        "",
-        'expected the key "free" here, found none',
-    ),
+    "no freedom": ((f", {FREE}", ""), "", 'expected the key "free" here, found none'),
 }
 
 

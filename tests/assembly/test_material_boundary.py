@@ -121,10 +121,7 @@ def test_the_lens_has_the_moments_of_points_drawn_by_rejection(tmp_path: Path) -
     assert isinstance(draw, GaugeShift)
     rng = np.random.default_rng(1)
     half, size = np.array([0.012, 0.016]), 0.01  # c = 0.03, |h| = 0.02
-    given = {
-        "bore size": np.full((1, COUNT), size),
-        "bore square": np.repeat(half[:, None], COUNT, axis=1),
-    }
+    given = {"bore size": np.full((1, COUNT), size), "bore square": np.repeat(half[:, None], COUNT, axis=1)}
     shifts = np.stack(draw.deviations_given(given, *rng.random((2, COUNT))))
     tried = rng.uniform(-0.03, 0.03, (2, 4 * COUNT))
     kept = tried[:, np.maximum(np.hypot(*(tried.T + half).T), np.hypot(*(tried.T - half).T)) <= 0.03]

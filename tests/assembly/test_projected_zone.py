@@ -72,12 +72,7 @@ STUD_UPRIGHT = "  upright: {kind: perpendicularity, of: base.stud hole, zone: {d
         # of 8 mm, held within 0.05 mm over 16 mm
         ([(UPRIGHT, UPRIGHT.replace("mm}", "mm, projected: 16 mm}"))], "cover.hole 1", "under", 0.025),
         # of 10 mm, within 0.05 mm over 40 mm, beside a position of the hole itself
-        (
-            [(REFINED, "{diameter: 0.05 mm, projected: 40 mm}, datums: [face]")],
-            "base.hole 1",
-            "face",
-            0.0125,
-        ),
+        ([(REFINED, "{diameter: 0.05 mm, projected: 40 mm}, datums: [face]")], "base.hole 1", "face", 0.0125),
         # a projected position, and an orientation of the 10 mm themselves
         ([("tolerances:\n", "tolerances:\n" + STUD_UPRIGHT)], "base.stud hole", "face", 0.03),
         # both projected: 0.03 mm over 20 mm

@@ -22,10 +22,7 @@ Rows = NDArray[np.int_]
 
 T, FEW, MANY = 0.1, 20_000, 200_000
 RARE = 1e-7
-ZONES: Mapping[str, Callable[..., Zone]] = {
-    "cylinder": catalogue.cylinder_surface,
-    "ball": catalogue.sphere_surface,
-}
+ZONES: Mapping[str, Callable[..., Zone]] = {"cylinder": catalogue.cylinder_surface, "ball": catalogue.sphere_surface}
 LAWS: Mapping[str, Callable[[Zone], Confined]] = {"uniform": uniform_in, "normal": normal_in}
 
 

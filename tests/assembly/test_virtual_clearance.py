@@ -275,11 +275,7 @@ def test_the_methods_differ_by_second_order(tmp_path: Path) -> None:
 BOTH = "holes: [s0.hole, s1.hole]"
 WRONG = {
     "one hole": ("holes: [s0.hole]", "measures.bolt.holes", "expected a list of 2 to 8 holes, got a list of 1"),
-    "a hole twice": (
-        "holes: [s0.hole, s0.hole]",
-        "measures.bolt.holes",
-        "expected each hole once, got 's0.hole'",
-    ),
+    "a hole twice": ("holes: [s0.hole, s0.hole]", "measures.bolt.holes", "expected each hole once, got 's0.hole'"),
     "no hole": (
         "holes: [s0.hole, s1.pin]",
         "measures.bolt.holes[1]",

@@ -164,8 +164,7 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "zone narrower than its refinement": (
         [
             added(
-                TOLERANCES,
-                "square: {kind: perpendicularity, of: base.hole, zone: {diameter: 0.3 mm}, datums: [floor]}",
+                TOLERANCES, "square: {kind: perpendicularity, of: base.hole, zone: {diameter: 0.3 mm}, datums: [floor]}"
             )
         ],
         "tolerances.base hole position.zone",

@@ -245,10 +245,7 @@ RINGS = {
         ("moves:", "  top: {kind: profile, of: plate.floor, zone: {width: 0.1 mm}, law: {kind: ring}}\nmoves:"),
         "expected uniform, normal or process, got ring of a profile of 'plate.floor'; a ring is of where an axis lies",
     ),
-    "orientation": (
-        ("  bored:", "  unread:"),
-        "got ring of a perpendicularity of 'plate.bore'; a ring is of where",
-    ),
+    "orientation": (("  bored:", "  unread:"), "got ring of a perpendicularity of 'plate.bore'; a ring is of where"),
 }
 
 

@@ -31,11 +31,7 @@ REFUSED = {
         "parts.disc.lobes: expected 39 lobes, one fewer than the 40 pins, got 40",
     ),
     "large pins": ("pin_radius: 5 mm", "pin_radius: 9.1 mm", "parts.pin ring.pin_radius: expected less than 8.98"),
-    "undercut by the offset": (
-        "offset: -12.795 um",
-        "offset: 4.2 mm",
-        "parts.disc.offset: expected less than",
-    ),
+    "undercut by the offset": ("offset: -12.795 um", "offset: 4.2 mm", "parts.disc.offset: expected less than"),
     "no clearance": (
         "offset: -12.795 um",
         "offset: -15 um",

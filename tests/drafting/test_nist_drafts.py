@@ -83,8 +83,7 @@ def measured(text: str, folder: Path, count: int) -> tuple[dict[str, dict[str, A
 
 
 @pytest.fixture(
-    scope="module",
-    params=[pytest.param(own, marks=() if own == CHEAPEST else pytest.mark.slow) for own in MODELS],
+    scope="module", params=[pytest.param(own, marks=() if own == CHEAPEST else pytest.mark.slow) for own in MODELS]
 )
 def drafted(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Drafted:
     """The scene of a model."""

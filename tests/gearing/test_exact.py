@@ -207,10 +207,7 @@ def test_the_general_kernel_continues_the_shortcut_for_parallel_axes(name: str, 
 
 # brute force ----------------------------------------------------------------------------------------------------------
 
-SPREADS = {
-    "tilted": Spread(past=0.3),
-    "warm": Spread(past=0.3, growth=4e-4, offset=0.0, tilt=0.7e-3, shift=0.04),
-}
+SPREADS = {"tilted": Spread(past=0.3), "warm": Spread(past=0.3, growth=4e-4, offset=0.0, tilt=0.7e-3, shift=0.04)}
 """An offset moves an edge along its own flank's normal in the search, along the line that joins the flanks in the
 engine: apart by 8 um (0.05 rad)^2/2 = 1e-5 mm where a tip edge touches as base pitches differ; so warm ones
 have none."""

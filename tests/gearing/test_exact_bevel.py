@@ -167,9 +167,7 @@ def undisturbed(pair: BevelPair, flank: Flank, turned: tuple[float, float], offs
     builds = random_builds(pair, flank, 50, 3, spread=Spread(*[0.0] * 7), thinner=0.0)
     radii = np.array([pair.pinion.mean_radius, pair.wheel.mean_radius])
     made = replace(
-        builds.made,
-        flank_turn=np.tile(np.array(turned) / (2 * radii), (50, 1)),
-        flank_offset=np.full((50, 2), offset),
+        builds.made, flank_turn=np.tile(np.array(turned) / (2 * radii), (50, 1)), flank_offset=np.full((50, 2), offset)
     )
     return replace(builds, made=made)
 

@@ -281,7 +281,7 @@ def test_ways_bind_as_often_as_one_pinion_sits_beyond_the_play(tmp_path: Path) -
 POSITIONS = (0.0, 37.0, 222.0, 1000.0)
 OUTPUT = [
     "  output clearance: {kind: bearing_clearance, of: output bearing, direction: random, "
-    "distribution: {kind: uniform, lower: 4 um, upper: 20 um}}",
+    "distribution: {kind: uniform, lower: 4 um, upper: 20 um}}"
 ]
 RUN_OUT = ["  {0} run-out: {{kind: run_out, of: {0}, distribution: {{kind: rayleigh, scale: 4 um}}}}"]
 

@@ -49,11 +49,7 @@ MODIFIED = "shift: -60 um, offset: -40 um"
 
 
 def scene(
-    *,
-    tolerances: str = OF_REDUCER + MOVED,
-    laid: tuple[str, ...] = CENTRAL,
-    modified: str = MODIFIED,
-    over: str = "",
+    *, tolerances: str = OF_REDUCER + MOVED, laid: tuple[str, ...] = CENTRAL, modified: str = MODIFIED, over: str = ""
 ) -> str:
     """A reducer of ratio 25 whose sun drives."""
     moves = "".join(

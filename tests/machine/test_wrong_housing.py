@@ -30,10 +30,7 @@ WRONG: dict[str, tuple[dict[str, str], str, str]] = {
         "count; take out one",
     ),
     "a bore's size beside the clearance of its bearing": (
-        {
-            "tolerances": f"\n  wide: {{kind: size, of: housing.bore 2b, {LAW}}}" + CLEARANCE,
-            "more": BEARING,
-        },
+        {"tolerances": f"\n  wide: {{kind: size, of: housing.bore 2b, {LAW}}}" + CLEARANCE, "more": BEARING},
         "tolerances.play",
         "expected no clearance beside 'wide', the size of a bore of the same shaft, for both say how loose it "
         "is; take out one",

@@ -7,16 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from places import SCENES
-from planetary_sets import (
-    ARCMIN,
-    PAIRS,
-    flexible,
-    free_by_highs,
-    pitch_rows,
-    random_deviations,
-    random_set,
-    reducer_3k,
-)
+from planetary_sets import ARCMIN, PAIRS, flexible, free_by_highs, pitch_rows, random_deviations, random_set, reducer_3k
 from scene_texts import edited, refusal
 
 from tol3d import Overrides, load_scene

@@ -112,10 +112,7 @@ REFUSED = {
         ("meshes: {sun: P1, ring 1: P1, ring 2: P2}", "meshes: {sun: P1}"),
         "moves.reducer.meshes: expected at least 2 entries, got 1",
     ),
-    "a gear twice": (
-        ("gears: [P1, P2]", "gears: [P1, P2, P1]"),
-        "parts.planet.gears: expected every gear once, got ",
-    ),
+    "a gear twice": (("gears: [P1, P2]", "gears: [P1, P2, P1]"), "parts.planet.gears: expected every gear once, got "),
     "another measure": (
         ("lost motion: {kind: planetary_lost_motion, of: reducer}", "lost motion: {kind: lost_motion, of: reducer}"),
         "measures.lost motion.of: expected the name of a train, got 'reducer', which is a planetary set",

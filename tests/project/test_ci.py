@@ -78,9 +78,7 @@ def calls(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, str]]:
     return [(line.partition("|")[0], line.partition("|")[2]) for line in told.read_text("utf-8").splitlines()]
 
 
-def test_ci_runs_the_readme_s_commands_each_in_a_copy_of_its_own(
-    calls: list[tuple[str, str]],
-) -> None:
+def test_ci_runs_the_readme_s_commands_each_in_a_copy_of_its_own(calls: list[tuple[str, str]]) -> None:
     said = [words for _, words in calls]
     first, second = (  # environments are made meanwhile
         [words for folder, words in calls if Path(folder).name == copy] for copy in ("first", "second")

@@ -714,11 +714,7 @@ def test_marks_lie_on_both_gears(run: Run) -> None:
 
 @pytest.mark.parametrize(
     ("which", "fmt", "message"),
-    [
-        (24, "glb", "expected 0 to 23"),
-        ("best", "glb", "got 'best'"),
-        (0, "obj", "expected one of stl, ply, glb, step"),
-    ],
+    [(24, "glb", "expected 0 to 23"), ("best", "glb", "got 'best'"), (0, "obj", "expected one of stl, ply, glb, step")],
 )
 def test_what_is_not_there_is_refused_in_words(run: Run, tmp_path: Path, which: str, fmt: str, message: str) -> None:
     with pytest.raises(InputError, match=message):

@@ -66,22 +66,13 @@ def line_of(text: str, part: str) -> int:
 # one wrong thing in a good scene --------------------------------------------------------------------
 
 CHANGES = {
-    "unknown key": (
-        ("teeth: 28", "tooth: 28"),
-        'parts.pinion.tooth: unknown key "tooth"; did you mean "teeth"?',
-    ),
-    "unknown key at the top": (
-        ("measures:", "measure:"),
-        'measure: unknown key "measure"; did you mean "measures"?',
-    ),
+    "unknown key": (("teeth: 28", "tooth: 28"), 'parts.pinion.tooth: unknown key "tooth"; did you mean "teeth"?'),
+    "unknown key at the top": (("measures:", "measure:"), 'measure: unknown key "measure"; did you mean "measures"?'),
     "key of another kind": (
         ("scale: 4.5 um", "scale: 4.5 um, sigma: 4 um"),
         'tolerances.pinion eccentricity.distribution.sigma: unknown key "sigma"; known here: kind, scale',
     ),
-    "missing key": (
-        ("teeth: 28, ", ""),
-        'parts.pinion: expected the key "teeth" here, found none',
-    ),
+    "missing key": (("teeth: 28, ", ""), 'parts.pinion: expected the key "teeth" here, found none'),
     "missing unit": (
         ("module: 2.5 mm", "module: 2.5"),
         'parts.pinion.module: expected a length with its unit, such as "4.5 um", got 2.5, a bare number without',
@@ -98,10 +89,7 @@ CHANGES = {
         ("module: 2.5 mm", "module: 2,5 mm"),
         'parts.pinion.5 mm: expected a key, got "5 mm"; write decimals with a point: a comma starts a new entry',
     ),
-    "unknown unit": (
-        ("module: 2.5 mm", "module: 2.5 inch"),
-        "unknown unit 'inch'; units are mm, um, nm, m, cm, in",
-    ),
+    "unknown unit": (("module: 2.5 mm", "module: 2.5 inch"), "unknown unit 'inch'; units are mm, um, nm, m, cm, in"),
     "wrong dimension": (
         ("module: 2.5 mm", "module: 2.5 deg"),
         "parts.pinion.module: expected a length with its unit, such as \"4.5 um\", got '2.5 deg', which is an angle",
@@ -139,26 +127,14 @@ CHANGES = {
         ("module: 2.5 mm", "module: -2.5 mm"),
         "parts.pinion.module: expected a length of more than zero, got '-2.5 mm'",
     ),
-    "zero teeth": (
-        ("teeth: 28", "teeth: 0"),
-        "parts.pinion.teeth: expected a number of at least 1, got 0",
-    ),
-    "half a tooth": (
-        ("teeth: 28", "teeth: 28.5"),
-        "parts.pinion.teeth: expected a whole number, got 28.5",
-    ),
-    "not a number": (
-        ("teeth: 28", "addendum: .nan, teeth: 28"),
-        "parts.pinion.addendum: expected a number, got nan",
-    ),
+    "zero teeth": (("teeth: 28", "teeth: 0"), "parts.pinion.teeth: expected a number of at least 1, got 0"),
+    "half a tooth": (("teeth: 28", "teeth: 28.5"), "parts.pinion.teeth: expected a whole number, got 28.5"),
+    "not a number": (("teeth: 28", "addendum: .nan, teeth: 28"), "parts.pinion.addendum: expected a number, got nan"),
     "text where a number is due": (
         ("trials: 2000", "trials: no"),
         "study.trials: expected a whole number or auto, got 'no'",
     ),
-    "half a trial": (
-        ("trials: 2000", "trials: 1.5e0"),
-        "study.trials: expected a whole number or auto, got 1.5",
-    ),
+    "half a trial": (("trials: 2000", "trials: 1.5e0"), "study.trials: expected a whole number or auto, got 1.5"),
     "nothing behind a key": (
         ("teeth: 28, module: 2.5 mm", "teeth: 28, module: "),
         'parts.pinion.module: expected a length with its unit, such as "4.5 um", got nothing',
@@ -294,26 +270,11 @@ CHANGES = {
         ("reducer run-out: 0.8", "reducer run-out: 180"),
         "contributors.reducer run-out: expected a number of at most 100, got 180",
     ),
-    "forbidden name": (
-        ("  wheel: ", "  a/b: "),
-        r"parts.a/b: expected a name without / \ :, got 'a/b'",
-    ),
-    "name like a column": (
-        ("  wheel: ", "  a.x: "),
-        'parts.a.x: expected a name that does not end in ".x" or ".y"',
-    ),
-    "name too long": (
-        ("  wheel: ", f"  {'w' * 81}: "),
-        "expected a name of up to 80 characters, got 81 of them",
-    ),
-    "number as a key": (
-        ("  wheel: ", "  1: "),
-        "parts: expected a key that is text, got 1; put it into quotes",
-    ),
-    "list as a key": (
-        ("  wheel: ", "  [a]: "),
-        "parts: expected a key that is text, got something else",
-    ),
+    "forbidden name": (("  wheel: ", "  a/b: "), r"parts.a/b: expected a name without / \ :, got 'a/b'"),
+    "name like a column": (("  wheel: ", "  a.x: "), 'parts.a.x: expected a name that does not end in ".x" or ".y"'),
+    "name too long": (("  wheel: ", f"  {'w' * 81}: "), "expected a name of up to 80 characters, got 81 of them"),
+    "number as a key": (("  wheel: ", "  1: "), "parts: expected a key that is text, got 1; put it into quotes"),
+    "list as a key": (("  wheel: ", "  [a]: "), "parts: expected a key that is text, got something else"),
     "number as text": (
         ("scene: spur pair at the drive end", "scene: 12"),
         "scene: expected text, got 12; put it into quotes",
@@ -322,10 +283,7 @@ CHANGES = {
         ("study: {", "study: [1]  # {"),
         "study: expected keys with values, such as {trials: …, until: …, at_most: …}, got a list",
     ),
-    "undefined alias": (
-        ("teeth: 28", "teeth: *z"),
-        "parts.pinion.teeth: the alias *z has no anchor (&z) before it",
-    ),
+    "undefined alias": (("teeth: 28", "teeth: *z"), "parts.pinion.teeth: the alias *z has no anchor (&z) before it"),
     "tag": (
         ("teeth: 28", "teeth: !!python/object/apply:os.system ['true']"),
         "parts.pinion.teeth: expected no tags, got '!!python/object/apply:os.system'",
@@ -334,26 +292,14 @@ CHANGES = {
         ("teeth: 28", "<<: 28"),
         "parts.pinion.<<: expected a mapping beside <<, or a list of them, such as <<: *block, got 28",
     ),
-    "second document": (
-        ("study:", "---\nstudy:"),
-        'expected one scene in a file, got a second document ("---")',
-    ),
+    "second document": (("study:", "---\nstudy:"), 'expected one scene in a file, got a second document ("---")'),
     "colon too many": (
         ("scene: spur", "scene: a: spur"),
         'not YAML: mapping values are not allowed in this context (column 9); a ":" too many or a wrong indent',
     ),
-    "tab": (
-        ("    kind: tooth_thickness", "\tkind: tooth_thickness"),
-        "indent with spaces, not with tabs",
-    ),
-    "control character": (
-        ("scene: spur", "scene: \x1b[2Jspur"),
-        "not YAML: the character U+001B is not allowed",
-    ),
-    "escape in a key": (
-        ("teeth: 28", '"te\\e[2Jeth": 28'),
-        'parts.pinion.te\\x1b[2Jeth: unknown key "te\\x1b[2Jeth"',
-    ),
+    "tab": (("    kind: tooth_thickness", "\tkind: tooth_thickness"), "indent with spaces, not with tabs"),
+    "control character": (("scene: spur", "scene: \x1b[2Jspur"), "not YAML: the character U+001B is not allowed"),
+    "escape in a key": (("teeth: 28", '"te\\e[2Jeth": 28'), 'parts.pinion.te\\x1b[2Jeth: unknown key "te\\x1b[2Jeth"'),
     "a face of no width": (
         ("face_width: 20 mm", "face_width: 1e-9 mm"),
         "parts.pinion.face_width: expected at least 1e-06 mm, got '1e-09 mm'",
@@ -362,10 +308,7 @@ CHANGES = {
         ("scene: spur pair at the drive end", 'scene: "\\ud800"'),
         "not YAML: found invalid Unicode character escape code",
     ),
-    "escape beyond Unicode": (
-        ("scene: spur pair at the drive end", 'scene: "\\UFFFFFFFF"'),
-        "not YAML: ",
-    ),
+    "escape beyond Unicode": (("scene: spur pair at the drive end", 'scene: "\\UFFFFFFFF"'), "not YAML: "),
 }
 
 

@@ -54,10 +54,7 @@ WRONG = {
         ("teeth: 17, module", "teeth: 17, profile_shift: 0.2, module"),
         "10: moves.pair: the profile shifts of a bevel pair must cancel",
     ),
-    "a flat pitch cone": (
-        ("shaft_angle: 75 deg", "shaft_angle: 150 deg"),
-        "10: moves.pair.shaft_angle: ",
-    ),
+    "a flat pitch cone": (("shaft_angle: 75 deg", "shaft_angle: 150 deg"), "10: moves.pair.shaft_angle: "),
     "no shaft angle at all": (
         ("shaft_angle: 75 deg", "shaft_angle: 0 deg"),
         "10: moves.pair.shaft_angle: expected a angle of more than zero",
@@ -66,10 +63,7 @@ WRONG = {
         ("driven: {kind: bevel_gear", "driven: {kind: spur_gear"),
         "10: moves.pair.driven: expected the name of a bevel gear, got 'driven', which is a spur gear",
     ),
-    "a centre distance": (
-        ("kind: bevel_mesh", "kind: mesh"),
-        '10: moves.pair.shaft_angle: unknown key "shaft_angle"',
-    ),
+    "a centre distance": (("kind: bevel_mesh", "kind: mesh"), '10: moves.pair.shaft_angle: unknown key "shaft_angle"'),
     "a centre distance's tolerance": (
         (OTHER, "kind: centre_distance, of: pair, distribution: {kind: constant, value: 0 um}"),
         "8: tolerances.other.of: expected the name of a mesh of spur gears, got 'pair', which is a bevel mesh",

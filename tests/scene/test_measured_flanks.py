@@ -117,11 +117,7 @@ def test_all_teeth_have_the_mean_of_those_that_were_measured(tmp_path: Path) -> 
         ),
         (INDEX, [HEADER, *ROWS[:5]], "expected no column 'flank' beside flanks: together in the header"),
         (SLOPE.replace("column: d", "column: d, unit: deg"), [HEADER], "expected a unit of length such as um, got"),
-        (
-            SLOPE.replace("column: d", "column: d, counted: up"),
-            [HEADER],
-            "law.counted",
-        ),
+        (SLOPE.replace("column: d", "column: d, counted: up"), [HEADER], "law.counted"),
         (
             f"{SLOPE}, limits: {{size: 3 um}}",
             [HEADER, *ROWS],

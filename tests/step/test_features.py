@@ -37,12 +37,7 @@ EXACT = 1e-9  # mm; what the text of a file is written to, and rounding
 @pytest.fixture(scope="module")
 def solids(tmp_path_factory: pytest.TempPathFactory) -> StepFile:
     """All small solids in one file, which is read once."""
-    shapes = {
-        "halved": halved_plate(),
-        "block": slotted_block(),
-        "socket": socket(),
-        "turned": turned(halved_plate()),
-    }
+    shapes = {"halved": halved_plate(), "block": slotted_block(), "socket": socket(), "turned": turned(halved_plate())}
     return read_step(step_file(shapes, tmp_path_factory.mktemp("solids") / "solids.step"))
 
 

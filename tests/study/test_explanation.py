@@ -289,8 +289,7 @@ LONG = ("tooth_deviations", "measured_teeth", "two_sided_te", "ring_train", "int
 
 
 @pytest.mark.parametrize(
-    "scene",
-    [pytest.param(own, marks=pytest.mark.slow) if own in LONG else own for own in shipped("gearing")],
+    "scene", [pytest.param(own, marks=pytest.mark.slow) if own in LONG else own for own in shipped("gearing")]
 )
 def test_no_shipped_scene_is_warned_of(scene: str) -> None:
     found = explained(model_of(scene), 1000)
