@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from machine.housed import ALONG, APART, GEARS, SHAFTS, plain_scene
-from scene_texts import scene_of
+from scene_texts import edited, refusal, scene_of
 
-from tol3d import Overrides, SceneError, load_scene, run_scene
+from tol3d import Overrides, load_scene, run_scene
 
 X, Y = (APART * own for own in ALONG)
 ROD = 50.0
@@ -79,9 +79,6 @@ def test_a_longer_rod_pushes_the_wheel_towards_the_pinion(tmp_path: Path) -> Non
 
 
 def test_no_path_is_read_beside_gears(tmp_path: Path) -> None:
-    place = tmp_path / "scene.yaml"
     read = "\n  along: {kind: gap, from: housing.eye, to: slide.eye, along: [1, 0, 0], over: there, take: max}\nstudy"
-    place.write_text(SCENE.replace("\nstudy", read), "utf-8")
-    with pytest.raises(SceneError) as refused:
-        load_scene(place)
-    assert "measures.along.over: expected none, for no move has paths, got 'there'" in str(refused.value)
+    said = refusal(edited(SCENE, ("\nstudy", read)), tmp_path)
+    assert "measures.along.over: expected none, for no move has paths, got 'there'" in said

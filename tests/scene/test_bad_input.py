@@ -14,11 +14,10 @@ from hypothesis import strategies as st
 from of_kind import of_kind
 from places import SCENES
 from ruamel.yaml import YAML
-from scene_texts import scene_of, written
+from scene_texts import Edit, edited, refusal_at, scene_of
 
 from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
-from tol3d.gearing.model import model_from_scene
 from tol3d.scene.problems import MOST_PROBLEMS
 from tol3d.scene.text import MAX_BYTES, MAX_DEPTH
 from tol3d.units import Quantity
@@ -565,18 +564,11 @@ TRAINS = {
 
 @pytest.mark.parametrize(("scene", "changes", "there", "words"), TRAINS.values(), ids=TRAINS.keys())
 def test_what_makes_no_train_is_said_once_with_its_line_and_place(
-    scene: str, changes: tuple[tuple[str, str], ...], there: str, words: str, tmp_path: Path
+    scene: str, changes: tuple[Edit, ...], there: str, words: str, tmp_path: Path
 ) -> None:
-    text = (SCENES / f"{scene}.yaml").read_text(encoding="utf-8")
-    for old, new in changes:
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    path = written(text, tmp_path)
-    with pytest.raises(SceneError) as caught:
-        model_from_scene(load_scene(path))
-    (said,) = caught.value.problems
-    line = line_of(text, there)
-    assert said.startswith(f"{path}:{line}: {words}")
+    text = edited((SCENES / f"{scene}.yaml").read_text("utf-8"), *changes)
+    said = refusal_at(text, tmp_path)
+    assert said.startswith(f"{line_of(text, there)}: {words}")
     assert said.isprintable()
 
 
