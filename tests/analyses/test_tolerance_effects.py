@@ -283,8 +283,7 @@ def effects_report_text(found: Effects) -> str:
 def test_a_run_keeps_its_effects(tmp_path: Path) -> None:
     run_scene("clutch", overrides=Overrides(trials=50), out=tmp_path / "run")
     done = CliRunner().invoke(
-        app,
-        f"effects {tmp_path}/run --base 64 --csv {tmp_path}/own.csv --picture {tmp_path}/own.png".split(),
+        app, f"effects {tmp_path}/run --base 64 --csv {tmp_path}/own.csv --picture {tmp_path}/own.png".split()
     )
     assert done.exit_code == 0, done.output
     kept = sections_of(open_run(tmp_path / "run"))["effects"]

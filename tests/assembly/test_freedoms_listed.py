@@ -70,10 +70,7 @@ def listed(scene: Path, start: str) -> list[tuple[str, ...]]:
             "door",
             "hanging",
             [
-                (
-                    "y, turns x, z",
-                    f"primary: door.{HOLDS} on body.{HOLDS}",
-                ),
+                ("y, turns x, z", f"primary: door.{HOLDS} on body.{HOLDS}"),
                 ("x, turns y", "secondary: door.upper hinge, lower hinge on body.upper hinge, lower hinge"),
                 ("z", "tertiary: door.upper hinge on body.upper hinge"),
             ],

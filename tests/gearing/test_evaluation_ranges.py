@@ -3,13 +3,13 @@
 import math
 from pathlib import Path
 
-import deviating_pair
 import numpy as np
 import pytest
+from gearing import deviating_pair
 from numpy.typing import NDArray
 from oracles.deviated_flanks import DeviatedGear, DeviatedPair, active_rolls, between
+from scene_texts import scene_of
 
-from tol3d import load_scene
 from tol3d.gearing.builds.flank_offsets import FlankPlaces
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Model, Reading, model_from_scene
@@ -95,8 +95,7 @@ def test_the_smallest_begin_of_all_mates_counts(tmp_path: Path) -> None:
     other = "{kind: mesh, driver: pinion, driven: long, centre_distance: 50.2 mm, azimuth: 150 deg}"
     text = text.replace("moves:", f"moves:\n  other: {other}")
     long = "  long: {kind: spur_gear, teeth: 30, module: 2 mm, face_width: 10 mm, addendum: 1.1, dedendum: 1.25}\n"
-    (tmp_path / "scene.yaml").write_text(text.replace("tolerances:", f"{long}tolerances:"), "utf-8")
-    model = model_from_scene(load_scene(tmp_path / "scene.yaml"))
+    model = model_from_scene(scene_of(text.replace("tolerances:", f"{long}tolerances:"), tmp_path))
     other_tip = math.sqrt(32.2**2 - (1.5 * BASE) ** 2)
     first = (math.sqrt(50.2**2 - (2.5 * BASE) ** 2) - other_tip) / BASE
     assert first < ACTIVE[0]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from deviating_pair import BASES, PITCH, SHAPES, TEETH, Builds, dense, drawn
+from gearing.deviating_pair import BASES, PITCH, SHAPES, TEETH, Builds, dense, drawn
 from numpy.typing import NDArray
 
 from tol3d.gearing.engines import OUT_OF_RANGE

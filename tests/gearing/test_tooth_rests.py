@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from deviating_pair import BASES, PITCH, SHAPES, TURN, Builds, dense, drawn
+from gearing.deviating_pair import BASES, PITCH, SHAPES, TURN, Builds, dense, drawn
 from numpy.typing import NDArray
 
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth

@@ -211,12 +211,7 @@ def test_levels_are_the_longest_path_with_each_cycle_one_place() -> None:
         "house.cellar": set[str](),
     }
     rooms = structure.arrows_between_rooms(files)
-    assert rooms == {
-        "hall": {"study", "cellar"},
-        "study": {"library"},
-        "library": {"study", "cellar"},
-        "cellar": set(),
-    }
+    assert rooms == {"hall": {"study", "cellar"}, "study": {"library"}, "library": {"study", "cellar"}, "cellar": set()}
     assert structure.named(rooms) == ("library <-> study",)
     assert structure.levels(rooms) == 3
     assert structure.named(files) == ()

@@ -118,9 +118,7 @@ def test_the_fewest_of_a_hundred_are_88() -> None:
 
 
 @pytest.mark.parametrize(
-    "own",
-    [Class(0.0015), Class(0.0015, turns=2.0, encoders=(0.0, 0.0))],
-    ids=["covered", "two of three turns"],
+    "own", [Class(0.0015), Class(0.0015, turns=2.0, encoders=(0.0, 0.0))], ids=["covered", "two of three turns"]
 )
 def test_intervals_hold_the_truth_of_a_few_units_with_pitch_errors(own: Class) -> None:
     inside = coverage(own, 4)
@@ -138,11 +136,7 @@ def test_intervals_hold_the_truth_in_88_of_100_sets(single: float) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "own",
-    [
-        Class(0.0015, eccentric=(0.0, 0.003)),
-        Class(0.0015, eccentric=(0.03, 0.06)),
-        Class(0.0015, encoders=(0.0, 0.0)),
-    ],
+    [Class(0.0015, eccentric=(0.0, 0.003)), Class(0.0015, eccentric=(0.03, 0.06)), Class(0.0015, encoders=(0.0, 0.0))],
     ids=["small eccentricities", "large ones", "one side"],
 )
 def test_intervals_hold_the_truth_of_other_classes(own: Class) -> None:
