@@ -186,6 +186,11 @@ class Questions:
         del asked
         return {"jobs": [_job(own) for own in reversed(self._jobs.list())]}
 
+    @property
+    def is_working(self) -> bool:
+        """True while a job runs or waits for its turn."""
+        return any(own.state in ("running", "waiting") for own in self._jobs.list())
+
     def start(self, asked: Told) -> Told:
         """Run a scene with all its trials, as `tol3d run` does."""
         path = self.workspace.scene(str(asked["scene"]))

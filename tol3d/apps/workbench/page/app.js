@@ -378,8 +378,10 @@ $("write").addEventListener("click", async () => {
 
 // what others change ------------------------------------------------------------------------------
 
+let looked = 0;
 setInterval(async () => {
-  if (!app.scene || document.hidden) return;
+  if (!app.scene || (document.hidden && Date.now() - looked < 60000)) return;
+  looked = Date.now();
   try {
     const found = await ask("changed");
     if (found.digest === app.digest) return;
