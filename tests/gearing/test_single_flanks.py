@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from deviating_pair import BASES, PITCH, SHAPES, TEETH, Builds, dense, drawn
+from deviating_pair import BASES, PITCH, SHAPES, TEETH, Builds, dense, drawn, model_of
 from numpy.typing import NDArray
 
+from tol3d.gearing.builds.flank_offsets import deviates
 from tol3d.gearing.engines import OUT_OF_RANGE
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.meshing.mesh import Meshing
@@ -49,12 +50,28 @@ def test_coarse_teeth_touch_further_beyond_the_path_of_contact(tmp_path: Path) -
     check_against_points(builds, (-5.0, 5.0), 0.04)
 
 
+def test_a_mesh_deviates_flank_by_flank_if_one_of_many_tolerances_does_so(tmp_path: Path) -> None:
+    thin = "kind: tooth_thickness, distribution: {kind: constant, value: -40 um}"
+    others = "\n".join(f"  {gear} thickness: {{{thin}, of: {gear}}}" for gear in ("pinion", "wheel"))
+    for tolerances, expected in ((others, False), (f"{others}\n{SHAPES}", True), (SHAPES, True)):
+        model = model_of(tmp_path, tolerances)
+        assert deviates(model, model.meshes[0]) == expected
+
+
 def test_gears_of_coarse_classes_are_in_range(tmp_path: Path) -> None:
     builds = drawn(f"{PITCH}\n{SHAPES}".replace("iso_class: 7", "iso_class: 8"), tmp_path, 300)
     found = builds.read()
     assert (found.status == 0).all()
     by_theory = stack_of(builds.model, builds.mesh, Reading()).normal_backlash(builds.deviations, builds.angle, None)
     assert 1e3 * np.abs(by_theory - found.gap).max() < 1.0  # 0.2 um at class 7, and more than squares near base circles
+
+
+def test_a_gear_that_has_grown_by_a_tenth_is_out_of_range_whichever_it_is(tmp_path: Path) -> None:
+    builds = drawn(PITCH, tmp_path, 4)
+    scale = np.array([[1.0, 1.0], [1.1, 1.0], [1.0, 1.1], [1.0, 1.0]])
+    made, both = replace(builds.engine.build(builds.deviations), scale=scale), frozenset(("pinion", "wheel"))
+    found = builds.engine.read(made, builds.mesh, Reading(), builds.angle, both)
+    assert (found.status == OUT_OF_RANGE).tolist() == [False, True, True, False]
 
 
 def check_against_points(builds: Builds, heights: tuple[float, ...], bound_um: float) -> None:
