@@ -262,8 +262,13 @@ def test_design_points_are_sought_at_as_many_positions_as_time_allows(
     """0.02 minutes a step, two builds for each of five that act: from two to eight positions; one if nothing turns."""
     simulation = SimpleNamespace(system=SimpleNamespace(streams=streams))
     response = SimpleNamespace(minutes=minutes, simulation=simulation, positions=lambda *asked: asked[:2])
-    sought = list[Any]()
-    monkeypatch.setattr(blame, "design_points", lambda _, positions, *others: sought.append(positions) or [])
+    sought = list[tuple[int, str]]()
+
+    def design_points(state: Any, positions: tuple[int, str], *others: Any) -> list[Any]:
+        sought.append(positions)
+        return []
+
+    monkeypatch.setattr(blame, "design_points", design_points)
     blame._points(SimpleNamespace(response=response, acting=range(5)), 1)  # type: ignore[arg-type]
     assert sought == [expected]
 
