@@ -54,6 +54,10 @@ WRONG: dict[str, tuple[Callable[[], str], str]] = {
         "expected 'cover.hole 2' and 'base.dowel 2' to be coaxial without deviations, got 0.5 mm between them at "
         "(100.5, 0, 20) mm",
     ),
+    "a pitch that rounding to a thousandth does not explain": (
+        lambda: pitch(0.0025),
+        "expected 'cover.hole 2' and 'base.dowel 2' to be coaxial without deviations, got 0.0025 mm between them at (",
+    ),
     "a wall that stands elsewhere": (  # it turns the cover flat, and leaves it 2 mm behind its edge
         lambda: SCENE.replace(LAST, "{kind: coincident, from: cover.edge, to: base.wall}").replace(
             "wall: {kind: plane, at: [50 mm, 30 mm", "wall: {kind: plane, at: [50 mm, 32 mm"

@@ -327,6 +327,20 @@ def test_a_pattern_pushed_along_x_goes_by_the_smallest_clearance(tmp_path: Path,
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_a_weight_off_the_middle_lowers_each_hole_by_the_clearance_of_its_pin(tmp_path: Path, method: str) -> None:
+    """Pins at 60 and 120 mm, the weight at 100: it sinks by (20 c1 + 40 c2) / 60, for both pins carry some of it."""
+    at = ((60.0, 0.0), (120.0, 0.0))
+    hung = assembled(plates(at, 10.2, 10.0, "{kind: toward, along: [0, -1, 0], at: upper.edge}"), tmp_path)
+    rows = np.zeros((2, hung.system.assembly.width))
+    rows[1, next(own.start for contributor, own in hung.slices if contributor.name == "pin 1 size")] = 0.05
+    if method == "exact":
+        found, _ = placing.values(hung.system.assembly, rows, ["y"])["y"]
+    else:
+        found = torsors.values(hung.system.assembly, rows, ["y"])["y"]
+    assert found == pytest.approx([-0.1, -(20 * 0.1 + 40 * 0.075) / 60], abs=1e-8)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_a_plate_hangs_on_two_pins_as_low_as_both_clearances_let_it(tmp_path: Path, method: str) -> None:
     """Problem 11c: clearances c = 0.1, the pins e too far apart, the weight midway: -sqrt(c² - e²/4); the mean and
     sigma of e in N(0, 0.04) by quadrature, no build beyond 2c."""

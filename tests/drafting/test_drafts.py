@@ -19,7 +19,7 @@ from tol3d.apps.drafting.drawn_part import distance_entry, enveloped
 from tol3d.apps.drafting.entry import Entry, Scene, Wording
 from tol3d.apps.drafting.fixture import seat_and_pins, three_two_one
 from tol3d.apps.drafting.parts import drafted_parts, read_files
-from tol3d.apps.drafting.touching_faces import TOUCHING, overlap
+from tol3d.apps.drafting.touching_faces import TOUCHING, largest_bolt, overlap
 from tol3d.apps.drafting.words import Names, comment, scalar
 from tol3d.assembly.model import Cone
 from tol3d.assembly.system import AssemblySystem
@@ -128,6 +128,28 @@ def test_holes_in_line_are_bolted_and_faces_that_touch_are_laid_on_each_other(tm
         "7.2 mm"
     }  # 8 mm less a tenth, for no position says it
     simulation_of(scene_of(text, tmp_path), Overrides())
+
+
+@pytest.mark.parametrize(
+    ("limits", "positions", "expected"),
+    [((8.9, 9.2), (0.2, 0.3), 8.6), ((9.1, 9.4), (0.3,), 8.7), (None, (0.3,), 8.7), ((8.9, 9.2), (), 8.01)],
+)
+def test_a_bolt_goes_through_the_hole_at_its_smallest_less_its_largest_position(
+    limits: tuple[float, float] | None, positions: tuple[float, ...], expected: float
+) -> None:
+    """A hole drawn at 9 mm with other limits: 8.9 less 0.3 mm; limits above 9 mm are not believed; a tenth without."""
+    hole = FoundFeature((4,), "cylinder", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), radius=4.5)
+    ends = {"features": [hole], "kind": ("diameter",), "limits": limits}
+    other = ends | {"features": [replace(hole, faces=(5,))], "limits": (1.0, 2.0)}
+    zones = [
+        (
+            SimpleNamespace(kind="position", magnitude=SimpleNamespace(value=own), feature=hole),
+            SimpleNamespace(how="said"),
+        )
+        for own in positions
+    ]
+    drawing = SimpleNamespace(tolerances=zones, dimensions=[SimpleNamespace(**own) for own in (ends, other)])
+    assert largest_bolt(SimpleNamespace(drawing=drawing), hole) == pytest.approx(expected)  # type: ignore[arg-type]
 
 
 def test_a_cone_is_laid_in_its_seat(tmp_path: Path) -> None:

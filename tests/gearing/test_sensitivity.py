@@ -28,7 +28,7 @@ from tol3d.gearing.model import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.slopes.coefficients import mean_slopes
+from tol3d.gearing.slopes.coefficients import Coefficient, Slopes, mean_slopes
 from tol3d.gearing.slopes.sensitivity import peak_weights, sensitivities, taken_rates
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
@@ -311,3 +311,10 @@ def test_slopes_at_a_mean_build_take_the_direction_in_which_the_measure_grows_mo
     assert thickness.direction is None
     assert thickness.above == pytest.approx(-1.0, abs=1e-6)
     assert stated(model, np.zeros((1, 3))).positions["mesh"].tolist() == [0.0]
+
+
+@pytest.mark.parametrize(("above", "expected"), [(0.96, False), (1.04, False), (0.94, True), (1.06, True)])
+def test_a_coefficient_is_marked_where_a_slope_of_the_geometry_is_off_by_more_than_a_twentieth(
+    above: float, expected: bool
+) -> None:
+    assert Coefficient("size", "um/um", Slopes(1.0, 1.0), Slopes(1.0, above), 40.0).disagrees == expected
