@@ -330,7 +330,7 @@ def test_a_pattern_pushed_along_x_goes_by_the_smallest_clearance(tmp_path: Path,
 def test_a_weight_off_the_middle_lowers_each_hole_by_the_clearance_of_its_pin(tmp_path: Path, method: str) -> None:
     """Pins at 60 and 120 mm, the weight at 100: it sinks by (20 c1 + 40 c2) / 60, for both pins carry some of it."""
     at = ((60.0, 0.0), (120.0, 0.0))
-    hung = assembled(plates(at, 10.2, 10.0, "{kind: toward, along: [0, -1, 0], at: upper.edge}"), tmp_path)
+    hung = assembled(pinned_plates(at, 10.2, 10.0, "{kind: toward, along: [0, -1, 0], at: upper.edge}"), tmp_path)
     rows = np.zeros((2, hung.system.assembly.width))
     rows[1, next(own.start for contributor, own in hung.slices if contributor.name == "pin 1 size")] = 0.05
     if method == "exact":

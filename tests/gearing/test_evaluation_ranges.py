@@ -86,8 +86,7 @@ def test_waves_count_over_the_range_and_slopes_beside_them_over_their_own(teeth:
     wave = f"{FORM}, shape: wave, waves: 2, range: [{diameters[0]} mm, {diameters[1]} mm]"
     text = deviating_pair.SCENE.format(tolerances=f"  wave: {{{wave}}}\n  slope: {{{SLOPE}}}", flank="right")
     text = text.replace("teeth: 20", f"teeth: {teeth}").replace("50.2 mm", f"{apart} mm")
-    (tmp_path / "scene.yaml").write_text(text, "utf-8")
-    model = model_from_scene(load_scene(tmp_path / "scene.yaml"))
+    model = model_from_scene(scene_of(text, tmp_path))
     first, last = (math.sqrt((own / 2 / base) ** 2 - 1) for own in diameters)
     begin, tip = active_rolls(teeth, 30, 2.0, apart)
     for share in (0.0, 0.1, 0.25, 0.6, 1.0, 1.1):
