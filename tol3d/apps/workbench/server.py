@@ -118,7 +118,7 @@ def _question(server: Server, name: str) -> Callable[[Request], Awaitable[Respon
                 raise ValueError
         except TooLargeError:
             return JSONResponse({"error": f"expected at most {LARGEST_BODY} bytes"}, 413)
-        except ValueError:
+        except (ValueError, RecursionError):  # brackets in brackets, by the thousand
             return JSONResponse({"error": "expected a JSON object"}, 400)
         try:
             return await server.asked(name, asked)
