@@ -213,6 +213,9 @@ def test_a_body_that_is_no_object_is_refused(body: bytes, app: Guard) -> None:
     assert (found.status, json.loads(found.body)) == (400, {"error": "expected a JSON object"})
 
 
+PAIR = {"scene": "spur_pair.yaml"}
+
+
 @pytest.mark.parametrize("words", [{}, {"scene": None}, {"scene": 3, "text": 4}, {"scene": ["spur_pair.yaml"]}])
 @pytest.mark.parametrize("name", ASKED)
 def test_a_question_with_other_words_than_the_page_s_has_words_for_an_answer(
@@ -222,6 +225,29 @@ def test_a_question_with_other_words_than_the_page_s_has_words_for_an_answer(
     assert (status == 200) == (name in ("folder", "jobs"))
     assert status in (200, 400, 422)
     assert isinstance(found.get("error", ""), str)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        *((name, {"now": now}) for name in ("card", "estimate", "notes", "keep") for now in (3, [1], "x", {"none": 1})),
+        *(("notes", {"beside": beside}) for beside in (3, [3], {"a": 1})),
+        *(("view", {"trial": trial}) for trial in (-1, 10**9, "x", [1])),
+        *(("view", {"builds": builds}) for builds in (3, None)),
+        *((name, {"id": own}) for name in ("cancel", "resume", "report") for own in ("", "../..", "0001", 7, None)),
+        ("keep", {"now": {"centre distance": "x2"}, "write": True, "digest": None}),
+        ("save", {"text": "\ud800", "digest": ""}),
+        ("save", {"text": None, "digest": ["x"]}),
+        ("card", {"measure": ["x"]}),
+    ],
+)
+def test_words_of_another_kind_are_refused(name: str, words: dict[str, object], app: Guard) -> None:
+    status, found = asked(app, name, **PAIR, **words)
+    if (name, words) == ("notes", {"now": {"none": 1}}):
+        assert status == 200, "no more than noted"
+    else:
+        assert status in (400, 409, 422)
+        assert found["error"]
 
 
 def test_no_websocket_is_opened(app: Guard) -> None:

@@ -124,7 +124,7 @@ def _question(server: Server, name: str) -> Callable[[Request], Awaitable[Respon
             return await server.asked(name, asked)
         except InputError as error:
             return JSONResponse({"error": str(error)}, STALE if type(error).__name__ == "StaleError" else 422)
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
             return JSONResponse({"error": f"expected another request: {error!r}"}, 400)
 
     return route

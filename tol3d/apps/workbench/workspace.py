@@ -111,7 +111,7 @@ class Workspace:
             return Notes(
                 _changes(told["now"]), tuple(_changes(own) for own in told["beside"][:MOST_KEPT]), str(told["measure"])
             )
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return Notes({})
 
     def note(self, scene: str, notes: Notes) -> None:
