@@ -128,13 +128,13 @@ def _question(server: Server, name: str) -> Callable[[Request], Awaitable[Respon
                 raise ValueError
         except TooLargeError:
             return JSONResponse({"error": f"expected at most {LARGEST_BODY} bytes"}, 413)
-        except ValueError:
+        except (ValueError, RecursionError):  # brackets in brackets, by the thousand
             return JSONResponse({"error": "expected a JSON object"}, 400)
         try:
             return await server.asked(name, asked)
         except InputError as error:
             return JSONResponse({"error": str(error)}, STALE if type(error).__name__ == "StaleError" else 422)
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
             return JSONResponse({"error": f"expected another request: {error!r}"}, 400)
 
     return route
