@@ -21,6 +21,7 @@ FOLDER = ROOT / "benchmarks"
 NUMBER = r"([\d,]*\.?\d+)"
 
 FEW: Mapping[str, tuple[str, ...]] = {
+    "app": ("spur_pair", "--times", "2"),
     "assemblies": ("--trials", "1024", "--rounds", "1", "--systems", "stack"),
     "convergence": ("--studies", "2", "--largest", "1024"),
     "curves": ("--trials", "20", "--positions", "8", "--long", "16", "--rounds", "1", "--workers", "1"),
@@ -46,6 +47,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
 """Arguments with which each benchmark takes seconds."""
 
 LONG = (
+    "app",
     "assemblies",
     "convergence",
     "curves",
@@ -67,6 +69,13 @@ LONG = (
 """Those that take more than a few of them."""
 
 ROWS: Mapping[str, tuple[str, ...]] = {
+    "app": tuple(
+        rf"spur_pair │ normal backlash │ 2000 +│ {question} +│ +{NUMBER} +│ +{NUMBER}"
+        for question in (
+            *("scene", "card, first", "estimate, first", "estimate while moving"),
+            *("card after release", "sliders", "check", "keep"),
+        )
+    ),
     "assemblies": (rf"3-2-1 stack of three blocks, 20 contributors +│ +{NUMBER} │ +{NUMBER} │ +{NUMBER}",),
     "convergence": tuple(
         rf"sigma driver at one position +{sampler} +order -?[\d.]+ +at 1024: {NUMBER} um"
@@ -186,6 +195,15 @@ def test_reducers_are_timed_by_each_method(capsys: pytest.CaptureFixture[str]) -
         found = re.search(rf"{scene} +│ +{NUMBER} │ +{NUMBER}", printed)
         assert found, printed
         assert all(float(number.replace(",", "")) > 0 for number in found.groups())
+
+
+@pytest.mark.slow
+def test_the_app_is_timed_in_a_browser(capsys: pytest.CaptureFixture[str]) -> None:
+    importlib.import_module("app").main(["spur_pair", "--browser", "--times", "3"])
+    printed = capsys.readouterr().out
+    found = re.fullmatch(rf"spur_pair: dashed curve on the screen after {NUMBER} ms, at most {NUMBER} ms\n", printed)
+    assert found, printed
+    assert 0 < float(found[1]) <= float(found[2])
 
 
 @pytest.mark.slow
