@@ -11,11 +11,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
+from tol3d.apps.workbench.place import APP, inside
 from tol3d.errors import InputError, unwritable
 from tol3d.study.runs.atomic_write import write_whole
 
-NOTES: Final = Path(".tol3d") / "app"
-"""Where what-ifs lie, in the folder."""
 VERSION: Final = 1
 SUFFIXES: Final = (".yaml", ".yml")
 LARGEST_SCENE: Final = 10_000_000  # bytes
@@ -78,13 +77,11 @@ class Workspace:
         Raises:
             InputError: it does, or cannot be made.
         """
-        place = self.folder / NOTES
+        place = inside(self.folder / APP, self.folder)
         try:
             place.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise unwritable(place, error, "what-ifs are kept there") from None
-        if not place.resolve().is_relative_to(self.folder):
-            raise InputError(f"{place}: expected a folder of this workspace, got a link that leads out of it")
         return place
 
     @property
@@ -114,7 +111,7 @@ class Workspace:
             return Notes(
                 _changes(told["now"]), tuple(_changes(own) for own in told["beside"][:MOST_KEPT]), str(told["measure"])
             )
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return Notes({})
 
     def note(self, scene: str, notes: Notes) -> None:

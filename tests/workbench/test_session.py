@@ -1,0 +1,260 @@
+"""The number on the card is that of a run and of `what-if`, and what is kept in the scene's file has it too."""
+
+import json
+import shutil
+from collections.abc import Iterator
+from concurrent.futures import wait
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from places import SPUR_PAIR
+
+from tol3d import InputError, Overrides, run_scene
+from tol3d.analyses.before_after import what_if
+from tol3d.analyses.stated_changes import factor_of
+from tol3d.apps.workbench.place import APP, FolderLock
+from tol3d.apps.workbench.questions import Questions, StaleError
+from tol3d.apps.workbench.workspace import Workspace
+from tol3d.study.runs.summary.judged import JudgedMeasure
+from tol3d.study.runs.summary.sample import CurveSample, Sample
+
+TRIALS = 200
+SCENE = "pair.yaml"
+TEXT = SPUR_PAIR.read_text("utf-8").replace("trials: 2000, seed: 1", f"trials: {TRIALS}, seed: 7")
+BACKLASH, MOTION, CENTRE = "normal backlash", "lost motion", "centre distance"
+WIDER = {CENTRE: "x1.65"}
+DIGITS = 1e-9
+"""Relative: a kept tolerance is written to ten digits."""
+
+
+def opened(folder: Path, text: str = TEXT) -> Questions:
+    """Questions of a folder with one scene."""
+    (folder / SCENE).write_bytes(text.encode())
+    return Questions(Workspace.of(folder), FolderLock(folder))
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Questions]:
+    """The spur pair, as it is."""
+    questions = opened(tmp_path_factory.mktemp("pair"))
+    yield questions
+    questions.close()
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Iterator[Questions]:
+    """One that is changed."""
+    questions = opened(tmp_path)
+    yield questions
+    questions.close()
+
+
+def asked(now: dict[str, str] | None = None, **words: Any) -> dict[str, Any]:
+    return {"scene": SCENE, "measure": BACKLASH, "now": now or {}, **words}
+
+
+def sample(questions: Questions, now: dict[str, str] | None = None, measure: str = BACKLASH) -> Sample:
+    """Statistics of a card, all of its trials."""
+    questions.card(asked(now, measure=measure))
+    found = questions.session(SCENE).evaluated(measure, now or {})
+    assert found.done == found.count == TRIALS
+    return found.sample
+
+
+QUANTILES = ("p0_135", "p50", "p99_865")
+"""Read from a grid, whose place is a little another one where the scene's own tolerances are."""
+
+
+def numbers(found: Sample | CurveSample) -> dict[str, float]:
+    """Numbers of a sample but those that are read from a grid."""
+    every = found.model_dump(exclude={*QUANTILES, "quantile_error"})
+    return {key: value for key, value in every.items() if isinstance(value, int | float)}
+
+
+def path_of(questions: Questions) -> Path:
+    return questions.workspace.folder / SCENE
+
+
+def test_the_card_s_numbers_are_those_of_a_run_bit_for_bit(pair: Questions, tmp_path: Path) -> None:
+    run = run_scene(path_of(pair), overrides=Overrides(witness=0), out=tmp_path / "run")
+    for measure in (BACKLASH, MOTION):
+        summary = run.found.measures[measure]
+        assert sample(pair, measure=measure) == summary.shares
+        judged = pair.session(SCENE).evaluated(measure, {}).judged
+        assert judged == JudgedMeasure.of(summary)
+        shown = pair.card(asked(measure=measure))["answer"]
+        assert f">{judged.verdict}</p>" in shown
+        assert f"{TRIALS} trials" in shown
+
+
+def test_a_moved_tolerance_has_the_numbers_of_what_if_and_of_the_kept_scene(own: Questions, tmp_path: Path) -> None:
+    response = own.session(SCENE).response
+    after = what_if(response, [factor_of(response, f"{CENTRE}=1.65")], BACKLASH, draws=0).measures[BACKLASH].after
+    tried = sample(own, WIDER)
+    assert (tried.mean, tried.sigma, tried.p0_135, tried.p99_865) == (after.mean, after.sigma, after.low, after.high)
+    assert (tried.ppk, tried.out_ppm, tried.out_ppm_95) == (after.ppk, after.out_ppm, after.out_ppm_95)
+    assert own.session(SCENE).evaluated(BACKLASH, WIDER).judged.verdict == after.verdict
+    assert tried.sigma is not None
+    assert tried.sigma > 1.2 * (sample(own).sigma or np.inf)
+
+    told = own.keep(asked(WIDER))
+    own.keep(asked(WIDER, write=True, digest=told["digest"]))
+    run = run_scene(path_of(own), overrides=Overrides(witness=0), out=tmp_path / "run")
+    for kept in (run.found.measures[BACKLASH].shares, sample(own)):
+        assert numbers(kept) == pytest.approx(numbers(tried), rel=DIGITS)
+        for key in QUANTILES:
+            assert getattr(kept, key) == pytest.approx(getattr(tried, key), abs=tried.quantile_error), key
+
+
+def test_an_estimate_is_near_what_is_simulated(pair: Questions) -> None:
+    """One of slopes at kept builds: the pair's own second order is thousandths of its spread."""
+    session = pair.session(SCENE)
+    for now in (WIDER, {"bearing clearance": "x0.7", "wheel eccentricity": "x1.5"}):
+        estimated, solid = session.estimate(BACKLASH, now), session.evaluated(BACKLASH, now)
+        sample(pair, now)
+        assert np.isfinite(estimated).all()
+        moved = solid.good - session.evaluated(BACKLASH, {}).good
+        assert np.abs(estimated - solid.good).max() < 0.01 * np.std(moved)
+        assert 'class="legend"' in pair.estimate(asked(now))["chart"]
+
+
+def test_what_is_kept_is_one_line_of_the_file(own: Questions) -> None:
+    told = own.keep(asked(WIDER))
+    assert path_of(own).read_text("utf-8") == TEXT, "asked for, not written"
+    changed = [line for line in told["diff"].splitlines() if line[0] in "+-" and line[:3] not in ("+++", "---")]
+    old, new = "{kind: normal, lower: -20 um, upper: 20 um}", "{kind: normal, lower: -33 um, upper: 33 um}"
+    assert changed == [f"-    distribution: {old}", f"+    distribution: {new}"]
+    assert own.notes(asked(WIDER)) == {}
+    again = own.keep(asked(WIDER, write=True, digest=told["digest"]))
+    assert path_of(own).read_text("utf-8") == TEXT.replace(old, new)
+    shown = own.scene(asked())
+    assert (shown["digest"], shown["text"], shown["notes"]["now"]) == (again["digest"], TEXT.replace(old, new), {})
+
+
+def test_ends_of_lines_stay(tmp_path: Path) -> None:
+    text = TEXT.replace("\n", "\r\n")
+    questions = opened(tmp_path, text)
+    told = questions.keep(asked(WIDER))
+    assert told["diff"].count("\n@@") == 1
+    assert sum(line[0] in "+-" for line in told["diff"].splitlines()) == 4, "names, and one line before and after"
+    questions.keep(asked(WIDER, write=True, digest=told["digest"]))
+    kept = path_of(questions).read_bytes().decode()
+    assert kept == text.replace("-20 um, upper: 20 um", "-33 um, upper: 33 um")
+    shown = questions.scene(asked())
+    questions.save(asked(text=TEXT, digest=shown["digest"]))
+    assert path_of(questions).read_bytes().decode() == text, "an editor knows LF alone"
+    questions.close()
+
+
+def test_what_others_wrote_meanwhile_is_not_lost(own: Questions) -> None:
+    told = own.keep(asked(WIDER))
+    theirs = TEXT.replace("lower: 2 um, upper: 30 um", "lower: 2 um, upper: 40 um")
+    before = sample(own).sigma
+    path_of(own).write_text(theirs, "utf-8")
+    assert own.changed(asked())["digest"] != told["digest"]
+    for call in (own.keep, own.save):
+        with pytest.raises(StaleError, match=r"pair\.yaml was changed by another program since it was read here"):
+            call(asked(WIDER, write=True, digest=told["digest"], text=TEXT))
+    assert path_of(own).read_text("utf-8") == theirs
+    assert sample(own).sigma != before, "what it says is read again"
+
+
+def test_a_second_app_only_reads(own: Questions) -> None:
+    other = Questions(own.workspace, FolderLock(own.workspace.folder))
+    assert "another tol3d app has it open" in other.folder({})["read_only"]
+    told = other.keep(asked(WIDER))
+    for call in (other.keep, other.save, other.start):
+        with pytest.raises(InputError, match="this one only reads"):
+            call(asked(WIDER, write=True, digest=told["digest"], text=""))
+    assert other.notes(asked(WIDER)) == {}
+    assert own.scene(asked())["notes"]["now"] == {}
+    assert path_of(own).read_text("utf-8") == TEXT
+    assert sample(other, WIDER) == sample(own, WIDER)
+    other.close()
+
+
+def test_what_ifs_outlive_the_app(own: Questions) -> None:
+    beside = [{CENTRE: "x2"}, {CENTRE: "±10 um"}, {}, {CENTRE: "x3"}]
+    own.notes(asked(WIDER, measure=MOTION, beside=beside))
+    own.lock.release()
+    later = Questions(Workspace.of(own.workspace.folder), FolderLock(own.workspace.folder))
+    assert later.scene(asked())["notes"] == {"now": WIDER, "beside": beside[:3], "measure": MOTION}
+    later.close()
+
+
+NOTES = {"version": 1, "now": WIDER, "beside": [], "measure": BACKLASH}
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [
+        *("", "{", "[]", "null", "[" * 100_000, "\0", '{"version": 1}'),
+        *(json.dumps(NOTES | other) for other in ({"version": 2}, {"now": 3}, {"beside": 3}, {"beside": ["x"]})),
+    ],
+)
+def test_notes_that_are_damaged_or_of_another_version_are_none(damaged: str, own: Questions) -> None:
+    file = own.workspace.folder / APP / f"{SCENE}.json"
+    file.write_text(json.dumps(NOTES))
+    assert own.scene(asked())["notes"]["now"] == WIDER
+    file.write_text(damaged)
+    assert own.scene(asked())["notes"] == {"now": {}, "beside": [], "measure": ""}
+
+
+@pytest.mark.parametrize(
+    ("now", "message"),
+    [
+        ({"center distance": "x2"}, "expected a contributor, got 'center distance'; did you mean"),
+        ({CENTRE: "x0"}, "expected a factor above 0 such as 0.5, got '0'"),
+        ({CENTRE: "xnan"}, "expected a factor above 0 such as 0.5, got 'nan'"),
+        ({CENTRE: "±3 kg"}, "expected a length with its unit"),
+        ({CENTRE: "wide"}, "expected a length with its unit"),
+        ({CENTRE: ""}, "expected NAME=VALUE"),
+        ({"bearing clearance": "-5 um..10 um"}, "expected at least 0 um, for less is not physical"),
+    ],
+)
+def test_a_change_that_cannot_be_is_refused_with_words(now: dict[str, str], message: str, pair: Questions) -> None:
+    for call in (pair.card, pair.estimate, pair.keep):
+        with pytest.raises(InputError) as error:
+            call(asked(now))
+        assert message in str(error.value)
+    with pytest.raises(InputError, match="normal backlash, lost motion"):
+        pair.card(asked(measure="none"))
+
+
+def test_a_wrong_scene_has_its_text_and_the_lines_of_its_faults(own: Questions) -> None:
+    text = TEXT.replace("module: 2.5 mm", "modul: 2.5 mm", 1).replace("of: gear pair", "of: gear par", 1)
+    line = 1 + text[: text.index("modul:")].count("\n")
+    path_of(own).write_text(text, "utf-8")
+    found = own.scene(asked())
+    assert found["text"] == text
+    assert "measures" not in found
+    assert found["problems"] == own.check(asked(text=text))["problems"]
+    assert line in [problem["line"] for problem in found["problems"]]
+    assert own.check(asked(text=TEXT)) == {"problems": [], "warnings": []}
+    with pytest.raises(InputError, match="modul"):
+        own.card(asked())
+
+
+def test_sliders_are_sorted_by_the_shares_of_a_run_and_end_where_a_tolerance_cannot_go(pair: Questions) -> None:
+    first = pair.sliders(asked())
+    assert len(first["acting"]) == 7
+    wait(pair.runs.values())
+    told = pair.sliders(asked(WIDER))
+    assert (told["waits"], "%</span>" in told["sliders"]) == (False, True)
+    lines = [part.partition('"')[0] for part in told["sliders"].split('<li data-line="')[1:]]
+    (run,) = (own.result() for own in pair.runs.values())
+    shares = {own.name: own.geometric_percent or 0.0 for own in run.found.measures[BACKLASH].contributors}
+    moved = [part.partition('"')[0] for part in told["sliders"].split('<li class="moved" data-line="')[1:]]
+    assert moved == [CENTRE]
+    assert lines == sorted([*{*shares} - {CENTRE}], key=lambda name: -shares[name])
+
+
+def test_as_many_scenes_as_are_allowed_stay_open(tmp_path: Path) -> None:
+    questions = opened(tmp_path)
+    for k in range(5):
+        shutil.copy(tmp_path / SCENE, tmp_path / f"{k}.yaml")
+        questions.session(f"{k}.yaml")
+    assert [*questions.sessions] == ["2.yaml", "3.yaml", "4.yaml"]
+    questions.close()
