@@ -31,6 +31,7 @@ PLACEHOLDER: Final = re.compile(r"…|\||\[|\b[A-Z]{3,}\b|--from$|design \w+$|ex
 READ_ONLY: Final = (
     r"^tol3d view (?!.*--(?:screenshot|animate))",  # opens a window
     r"^tol3d view .*--animate",  # takes long to draw; tests/report/test_animation.py looks at such films
+    r"^tol3d app ",  # serves until Ctrl-C
     r"^tol3d check spherical_drive",  # compiles for long; tests/linkage looks at its tables
     r"^tol3d allocate gearbox_in_housing ",  # takes minutes; the same for spur_pair_25.yaml is run
     r"^tol3d new --from .* --seat ",  # of two files of the reader's; tests/drafting runs it

@@ -350,6 +350,10 @@ async function save() {
 
 async function keep() {
   if ($("keep").disabled) return;
+  if (editor.text() !== app.saved) {
+    trouble("save the text first: what is kept is a change of the scene's file, which is then read again");
+    return;
+  }
   try {
     const found = await ask("keep");
     const lines = found.diff.split("\n").map((line) => {
@@ -523,7 +527,7 @@ async function jobs() {
     words.textContent = `${job.kind} ${job.state}${share} ${job.state === "running" ? job.words : job.message}`;
     const act = ENDED.includes(job.state) ? [] : [button("cancel", () => ask("cancel", { id: job.id }).then(jobs, trouble))];
     if (["cancelled", "interrupted"].includes(job.state)) act.push(button("resume", () => ask("resume", { id: job.id }).then(jobs, trouble)));
-    if (job.state === "done" && job.kind === "run") act.push(button("report", () => report(job.id)));
+    if (job.state === "done" && ["run", "report"].includes(job.kind)) act.push(button("report", () => report(job.id)));
     return [words, ...act];
   }));
   clearTimeout(jobs.later);
