@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from composite_plate import plate
+from assembly.composite_plate import plate
 from fixtures import Command
 
 from tol3d import InputError

@@ -237,8 +237,11 @@ class Questions:
         before = session.content.decode("utf-8")
         if not asked.get("write"):
             return {"diff": _difference(before, text, session.path.name), "digest": session.digest}
+        beside = [
+            dict(written_words(session, _changes(own))) for own in asked.get("beside", ())
+        ]  # factors were of before
         self._write(session.path, text, str(asked["digest"]))
-        self.notes({**asked, "now": {}})
+        self.notes({**asked, "now": {}, "beside": beside})
         return {"digest": digest(text.encode())}
 
     def save(self, asked: Told) -> Told:
