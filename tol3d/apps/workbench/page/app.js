@@ -497,6 +497,7 @@ $("trial").addEventListener("change", stage);
 $("lit").addEventListener("change", light);
 window.addEventListener("tol3d-acting", light);
 window.addEventListener("tol3d-scene", stage);
+window.addEventListener("tol3d-card", () => $("build").value !== "nominal" && stage());
 
 // jobs --------------------------------------------------------------------------------------------
 
