@@ -34,6 +34,7 @@ def app(
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listening.bind(("127.0.0.1", port))
+            listening.listen()  # a browser that is quicker than the server waits
         except OSError as error:
             raise InputError(f"--port {port}: {error.strerror}; leave it out for one that is free") from None
         own = listening.getsockname()[1]
