@@ -29,7 +29,7 @@ FIELD = f'#sliders input[type=text][data-line="{CENTRE}"]'
 SEEN = """window.seen = [];
 new MutationObserver(() => seen.push(document.querySelector("#chart .legend .dashed") !== null)).observe(
   document.querySelector("#chart"), { childList: true })"""
-"""Notes each picture of the histogram: with an estimate or without. By keyboard a slider is moved and released at once."""
+"""Notes each picture of the histogram: with an estimate or without; a key moves a slider and releases it at once."""
 WIDER = """["html", "#left", "#middle", "#card"].filter((own) => {
   const { scrollWidth, clientWidth } = document.querySelector(own);
   return scrollWidth > (own === "html" ? innerWidth : clientWidth);
