@@ -59,7 +59,7 @@ def app(
 
 def _opener(folder: Path, address: str) -> Path:
     """A page for the user alone that leads to the app: a browser's command line, which others see, holds no token."""
-    page = folder / "tol3d.html"
+    page = folder / "page.html"
     page.touch(stat.S_IRUSR | stat.S_IWUSR)
     page.write_text(
         f'<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url={address}">'
