@@ -30,6 +30,10 @@ VIEW: Final = ("report/view.py", "report/whole.py", "report/drawn_solids.py")
 CLOSE_UP: Final = (*VIEW, "gearing/presenting/panels.py", "gearing/presenting/gear_display.py")
 CHART: Final = ("report/chart.py", "report/chart_figure.py", "report/drawn_chart.py", "report/measure_charts.py")
 HISTOGRAM: Final = ("report/histogram.py", "report/picture.py", "report/share_charts.py", "report/bars.py", *CHART)
+APP: Final = (
+    *("docs/app_picture.py", "apps/workbench/card.py", "apps/workbench/tree.py"),
+    *("apps/workbench/page/index.html", "apps/workbench/page/app.css"),
+)
 CURVE_ALONE: Final = """
 from pathlib import Path
 from tol3d import load_scene
@@ -76,7 +80,17 @@ def charted(scene: str, name: str, *sources: str) -> Picture:
     return Picture((f"tol3d run {scene} --out run",), f"run/{name}", sources, (scene,))
 
 
+def app(scene: str, options: str) -> Picture:
+    """The local app with a bundled scene."""
+    program = f"env PYTHONPATH={TREE}/tests {sys.executable} {TREE}/docs/app_picture.py"
+    return Picture((f"{program} {scene} {options}",), "app.png", APP, (scene,))
+
+
 PICTURES: Final[Mapping[str, Picture]] = {
+    "app.png": app("spur_pair", '--tried "centre distance=1.65"'),
+    "app_assembly.png": app(
+        "bracket_in_box", '--measure "right 1 across" --lit --no-names --moving "right bore position=2"'
+    ),
     "bevel_contact.png": viewed("bevel_pair", "--trial 5 --magnify 8", CLOSE_UP),
     "builders.png": viewed("machined_parts", "--nominal"),
     "carrier_opening.webp": animated("reducer_3k_flexible", "--mean --magnify 8 --frames 12"),

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scene_texts import scene_of
 
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.system import AssemblySystem
-from tol3d.scene import Scene
-from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.simulate import Overrides, simulation_of
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.stated import component_slices, nominal_build
 from tol3d.study.system.trials import Trials
@@ -59,13 +59,6 @@ class Assembled:
     def nominal(self) -> Mapping[str, float]:
         """Measures without deviations [mm or rad]."""
         return {name: float(own[0]) for name, own in self.values(nominal_build(self.system)).items()}
-
-
-def scene_of(text: str, folder: Path) -> Scene:
-    """A scene that is written as a text."""
-    path = folder / "assembly.yaml"
-    path.write_text(text, encoding="utf-8")
-    return load(path)
 
 
 def assembled(text: str, folder: Path) -> Assembled:

@@ -3,7 +3,7 @@
 import gc
 import os
 import sys
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from typing import Any
 
 import bytecode  # noqa: F401, first of all
@@ -11,8 +11,9 @@ import hypothesis
 import pytest
 from fixtures import Command, EngineOf, strips_of
 from places import SPUR_PAIR
-from scheduling import MANY, DearestFirst, compile_kernels, dearest_first
-from thinned import sort_into_sets
+from sets import MANY, DearestFirst, compile_kernels, dearest_first, sort_into_sets
+from toys.parabola import PARABOLA
+from toys.registered import known
 
 from tol3d import cli, load_scene
 from tol3d.gearing.engines.fcl import FclEngine
@@ -76,6 +77,13 @@ def engine_of() -> EngineOf:
         return FclEngine(model, {part.name: strips_of(part.gear, steps) for part in model.gears})
 
     return make
+
+
+@pytest.fixture(scope="module")
+def springs() -> Iterator[None]:
+    """The mechanism of springs is known."""
+    with known(PARABOLA):
+        yield
 
 
 @pytest.fixture

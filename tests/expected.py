@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from places import SCENES
 
+from tol3d import Run
+
 PRINTED: Final = 1e-5  # um, mm or arcmin; the files give that many digits
 
 
@@ -53,3 +55,27 @@ def assert_met(
     if "shares" in own:
         shares = {row["name"]: row["analytic_percent"] for row in found["contributors"]}
         assert shares == pytest.approx(own["shares"], abs=0.01)
+
+
+def assert_all_met(
+    run: Run, scene: str, geometric: float, analytic: float = PRINTED, *, at: int | slice = slice(None)
+) -> None:
+    """All measures of a run of a scene have the numbers of the file beside it, and as many trials as it says are built.
+
+    Args:
+        run: on the trials of the file.
+        scene: of `scenes/`.
+        geometric, analytic, at: as of assert_met.
+    """
+    summary, trials = run.summary, expected(scene)["trials"]
+    assert sum(summary["status"].values()) == trials
+    assert summary["status"]["ok"] == expected(scene).get("built", trials)
+    assert list(summary["measures"]) == list(measures_of(scene))
+    for name, own in measures_of(scene).items():
+        assert_met(summary["measures"][name], own, geometric, analytic, at=at)
+
+
+def assert_closed_forms_are_there(run: Run, scene: str) -> None:
+    """Measures of a run have a closed form where the file beside the scene has one, and only there."""
+    own = {name for name, measure in run.summary["measures"].items() if "analytic_closed_form" in measure}
+    assert own == {name for name, measure in measures_of(scene).items() if "closed_form" in measure}

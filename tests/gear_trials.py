@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 from tol3d import Scene
 from tol3d.gearing.engines import Engine
 from tol3d.gearing.methods.geometric import GeometricMethod
+from tol3d.gearing.model import Measure as GearMeasure
 from tol3d.gearing.model import Model
+from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.trials import Trials
 from tol3d.study.trials.columns import columns_of
@@ -48,3 +51,15 @@ def gear_columns(
 def first_shafts_at(model: Model, angle: float, count: int) -> Mapping[str, NDArray[np.float64]]:
     """Driver angles [rad] (count,) by mesh, of shafts that all stand alike."""
     return {mesh.name: np.full(count, angle) for mesh in model.meshes}
+
+
+def measure_of(model: Model, name: str) -> GearMeasure:
+    """A measure by its name."""
+    return next(measure for measure in model.measures if measure.name == name)
+
+
+def form_of(model: Model, name: str) -> ClosedForm:
+    """Closed form of a measure, which must have one."""
+    form = closed_form(model, measure_of(model, name))
+    assert form is not None
+    return form

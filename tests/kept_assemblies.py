@@ -19,9 +19,12 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 from assembly import test_pattern_datums, test_together
+from assembly.framed_parts import MOVES, scene
 from assembly.placing.one_sided_parts import random_contacts, random_pads
 from assembly.placing.test_best_fitting import fitted, random_points
 from assembly.placing.test_locating import random_move
+from assembly.plates_with_pins import pinned_plates
+from assembly.random_touches import KINDS, random_touch
 from assembly.test_bolts import FOUR, TWO, joint
 from assembly.test_gauged_pattern import holes
 from assembly.test_gauged_rooms import FRAMES as GAUGED
@@ -37,14 +40,11 @@ from assembly.test_rest_methods import SEEN
 from assembly.test_rest_relations import on_pads
 from assembly.test_shifted_coordinates import FAR_OFF, askew, datums_in, every_move
 from assembly.test_shifted_coordinates import FRAMES as DATUMS
-from assembly.test_tied_patterns import PUSHED, cover
+from assembly.test_tied_patterns import cover, pushed_plate
 from assembly.test_virtual_clearance import LEANING, sheets
 from assembly_trials import Assembled, assembled
-from framed_parts import MOVES, scene
 from numpy.typing import NDArray
 from places import SCENES, TESTS
-from plates_with_pins import plates
-from random_touches import KINDS, random_touch
 from scipy.spatial.transform import Rotation
 from shipped import shipped
 
@@ -200,7 +200,7 @@ def chain(k: int, folder: Path) -> Built:
 def pins(k: int, folder: Path) -> Built:
     rng = np.random.default_rng(k)
     at = [(float(x), float(y)) for x, y in np.round(rng.uniform(-60, 60, (int(rng.integers(2, 7)), 2)), 3)]
-    text = plates(at, float(rng.choice([10.03, 10.05, 10.2])), 10.0, FLOATS[k % 3])
+    text = pinned_plates(at, float(rng.choice([10.03, 10.05, 10.2])), 10.0, FLOATS[k % 3])
     return of_text(text, folder, k if k % 2 else None)
 
 
@@ -224,9 +224,7 @@ def tied(k: int, folder: Path) -> Built:
 
 
 def pushed(k: int, folder: Path) -> Built:
-    text = PUSHED.replace("WIDE", ("10.12", "10.4")[k % 2]).replace("ALONG", ("[0, 1, 0]", "[0.8, 0.6, 0]")[k // 2])
-    names = "plate.hole {0}, to: base.pin {0}"
-    text = text.replace("PAIR 1", names.format(1)).replace("PAIR 2", names.format(2))
+    text = pushed_plate((10.12, 10.4)[k % 2], ((0, 1), (0.8, 0.6))[k // 2])
     return of_text(text, folder, k if k % 2 else None)
 
 

@@ -46,3 +46,8 @@ def starting(model: str, start: str) -> dict[int, str]:
     """The bodies that begin so, a regular expression."""
     pattern = re.compile(start)
     return {identifier: body for identifier, body in bodies(model).items() if pattern.match(body)}
+
+
+def references(body: str) -> list[int]:
+    """Entities that one refers to."""
+    return [int(each) for each in re.findall(r"#(\d+)", body)]

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analyses.linear_stacks import stack
 from fixtures import Command
 from formulas import formula
-from linear_stacks import stack
 from rich.console import Console
 from scipy.stats import norm
 from toys.parabola import PARABOLA

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from linear_stacks import Array, Stack, stack
+from analyses.linear_stacks import Array, Stack, stack
 
 from tol3d import InputError
 from tol3d.analyses.moved_values import MovedValues

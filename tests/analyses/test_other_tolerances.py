@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from linear_stacks import stack
+from analyses.linear_stacks import stack
 
 from tol3d import InputError
 from tol3d.analyses.response import Response, response_of
@@ -85,8 +85,16 @@ def test_a_scene_with_other_tolerances_draws_the_same(name: str, entries: tuple[
         assert _same(scene, response, entry, 0.5)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", sorted(bundled_scenes()))
+IN_CI = ("bevel_pair", "every_assembly_field", "every_planetary_field", "reducer_3k_flexible", "tooth_deviations")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(own, marks=pytest.mark.slow if own in IN_CI else pytest.mark.nightly)
+        for own in sorted(bundled_scenes())
+    ],
+)
 def test_every_scene_with_other_tolerances_draws_the_same(name: str) -> None:
     scene = load(name)
     response = response_of(simulation(name))
@@ -160,8 +168,7 @@ SCOPED = ("spur_pair", "bolted_cover", "three_stage_train")
 
 
 @pytest.mark.parametrize(
-    "name",
-    [own if own in SCOPED else pytest.param(own, marks=pytest.mark.slow) for own in sorted(bundled_scenes())],
+    "name", [own if own in SCOPED else pytest.param(own, marks=pytest.mark.slow) for own in sorted(bundled_scenes())]
 )
 def test_a_scope_offers_what_scaling_accepts_and_ends_where_it_refuses(name: str) -> None:
     """Every contributor: its ends and factors between them, and just beyond and farther, by `scaled` alone."""

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import Command
-from limit_states import CASES, OTBENCHMARK, Case, Value, formula
+from oracles.limit_states import CASES, OTBENCHMARK, Case, Value, formula
 from scipy.optimize import brentq
 from scipy.stats import norm
 from toys.parabola import PARABOLA

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from linear_stacks import stack
+from analyses.linear_stacks import stack
 from scipy.stats import ks_2samp, norm
 
 from tol3d import InputError, Overrides, run_scene
@@ -180,8 +180,7 @@ REDRAWN = ("spur_pair", "every_field")  # plain, correlated
 
 
 @pytest.mark.parametrize(
-    "name",
-    [own if own in REDRAWN else pytest.param(own, marks=pytest.mark.slow) for own in sorted(bundled_scenes())],
+    "name", [own if own in REDRAWN else pytest.param(own, marks=pytest.mark.slow) for own in sorted(bundled_scenes())]
 )
 def test_builds_drawn_again_are_those_of_the_other_tolerances_to_the_bit(name: str) -> None:
     """Each contributor that can be another one, from the kept draws and from those of the one before; then back."""

@@ -3,6 +3,8 @@
 import math
 from itertools import permutations
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from toys.registered import TOYS, known
 from typer.testing import CliRunner
 
 from tol3d import InputError, Overrides, open_run, run_scene
+from tol3d.analyses import blame
 from tol3d.analyses.response import response_of
 from tol3d.analyses.shown_effects import effects_report, whole_table
 from tol3d.analyses.subject import sections_of
@@ -249,6 +252,27 @@ def test_frequent_failures_are_blamed_by_indices_of_failing() -> None:
         assert holds(each.failures_total, 1 - other)
 
 
+@pytest.mark.parametrize(
+    ("minutes", "streams", "expected"),
+    [(1e-12, True, (8, "drawn")), (4e-4, True, (5, "drawn")), (1.0, True, (2, "drawn")), (1e-12, False, (1, "rest"))],
+)
+def test_design_points_are_sought_at_as_many_positions_as_time_allows(
+    minutes: float, streams: bool, expected: tuple[int, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """0.02 minutes a step, two builds for each of five that act: from two to eight positions; one if nothing turns."""
+    simulation = SimpleNamespace(system=SimpleNamespace(streams=streams))
+    response = SimpleNamespace(minutes=minutes, simulation=simulation, positions=lambda *asked: asked[:2])
+    sought = list[tuple[int, str]]()
+
+    def design_points(state: Any, positions: tuple[int, str], *others: Any) -> list[Any]:
+        sought.append(positions)
+        return []
+
+    monkeypatch.setattr(blame, "design_points", design_points)
+    blame._points(SimpleNamespace(response=response, acting=range(5)), 1)  # type: ignore[arg-type]
+    assert sought == [expected]
+
+
 @pytest.mark.parametrize("rho", [0.0, 0.5])
 def test_rare_failures_are_blamed_by_design_points(rho: float) -> None:
     """For a plane, squared direction cosines are shares of the variance, or Shapley effects of correlated ones."""
@@ -283,8 +307,7 @@ def effects_report_text(found: Effects) -> str:
 def test_a_run_keeps_its_effects(tmp_path: Path) -> None:
     run_scene("clutch", overrides=Overrides(trials=50), out=tmp_path / "run")
     done = CliRunner().invoke(
-        app,
-        f"effects {tmp_path}/run --base 64 --csv {tmp_path}/own.csv --picture {tmp_path}/own.png".split(),
+        app, f"effects {tmp_path}/run --base 64 --csv {tmp_path}/own.csv --picture {tmp_path}/own.png".split()
     )
     assert done.exit_code == 0, done.output
     kept = sections_of(open_run(tmp_path / "run"))["effects"]

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from analyses.linear_stacks import stack
 from fixtures import Command
 from formulas import Array, formula
-from linear_stacks import stack
 from scipy.stats import norm
 from toys.parabola import PARABOLA
 from toys.registered import TOYS, known

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from assembly_trials import scene_of
 from numpy.typing import NDArray
+from scene_texts import scene_of
 from scipy.stats import norm
 from toys.parabola import PARABOLA
 from toys.registered import TOYS, known

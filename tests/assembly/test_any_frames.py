@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.framed_parts import MOVES, scene
 from assembly_trials import assembled
-from framed_parts import MOVES, scene
 
 from tol3d.assembly.model.statuses import OK
 from tol3d.study.trials.draws import drawn

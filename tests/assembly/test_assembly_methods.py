@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from drafts import Draft, Vector, displacement, frame, turned
+from assembly.drafts import Draft, Vector, displacement, frame, turned
 from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.measures.gap import AngleSpec, DistanceSpec, GapSpec, PointPlaneSpec

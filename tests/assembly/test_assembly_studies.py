@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.datum_plate import SIGMAS, covariance, plate
 from assembly_trials import constant, normal
-from datum_plate import SIGMAS, covariance, plate
 from places import SCENES
 
 from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of

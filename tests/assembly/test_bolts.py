@@ -229,7 +229,7 @@ def test_a_run_with_a_screw_has_two_thirds_of_its_variance_by_the_screw(tmp_path
     """x = 0.4 mm + (both sizes of holes) / 2 - d, each of 0.05 mm: sigma 0.05 √1.5, by both methods."""
     floating, count = "{kind: toward, along: [1, 0, 0], at: cover.hole 0}", 1000
     joint(TWO[:1], tmp_path, floating, bolt="screw.shank", screw=True)
-    scene, given = tmp_path / "assembly.yaml", Overrides(trials=count)
+    scene, given = tmp_path / "scene.yaml", Overrides(trials=count)
     found = run_scene(scene, overrides=given, out=tmp_path / "run").found.measures["x"]
     sigma = 50 * math.sqrt(1.5)
     for own in (found.analytic, found.geometric):
@@ -242,10 +242,7 @@ def test_a_run_with_a_screw_has_two_thirds_of_its_variance_by_the_screw(tmp_path
 
 @pytest.mark.parametrize(
     ("at", "floating", "zones", "trial"),
-    [
-        (FOUR, "{kind: centred}", False, 120),
-        (TWO, "{kind: toward, along: [1, 0, 0], at: cover.hole 0}", True, 137),
-    ],
+    [(FOUR, "{kind: centred}", False, 120), (TWO, "{kind: toward, along: [1, 0, 0], at: cover.hole 0}", True, 137)],
     ids=["centred", "pushed"],
 )
 def test_a_cover_rests_within_ten_poses_though_a_bolt_is_free_to_lean(

@@ -9,13 +9,13 @@ import pytest
 from assembly_trials import assembled
 from fixtures import Command
 from numpy.typing import NDArray
+from scene_texts import refusal, written
 from scipy import integrate
 from scipy.stats import norm
 
 from tol3d.assembly.zones import Bonus, SizedBy, Widened, catalogue, uniform_in
 from tol3d.assembly.zones.zone_draw import Process
-from tol3d.errors import SceneError
-from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of
+from tol3d.simulate import Execution, Overrides, replay, run_scene
 from tol3d.statistics.distributions import Distribution
 from tol3d.statistics.distributions.normal import Normal
 from tol3d.statistics.distributions.uniform import Uniform
@@ -264,8 +264,7 @@ def test_the_width_of_a_slot_widens_its_zone_too(tmp_path: Path, tab: str, grows
 
 
 def test_a_run_says_which_model_it_is(tol3d: Command, tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(zoned(), "utf-8")
+    path = written(zoned(), tmp_path)
     code, out, _ = tol3d("run", str(path), "-v", "--trials", "500", "--no-picture", "--out", str(tmp_path / "run"))
     assert code == 0
     words = "uniform in its zone, widened by the bonus of bore size"
@@ -403,11 +402,6 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("case", WRONG)
-def test_what_is_wrong_is_said_once(case: str, tmp_path: Path) -> None:
-    text, place, sentence = WRONG[case]
-    path = tmp_path / "scene.yaml"
-    path.write_text(text, "utf-8")
-    with pytest.raises(SceneError) as caught:
-        simulation_of(load(path), Overrides())
-    assert str(caught.value).partition(": ")[2] == f"{place}: {sentence}"
+@pytest.mark.parametrize(("text", "place", "said"), WRONG.values(), ids=WRONG)
+def test_what_is_wrong_is_said_once(text: str, place: str, said: str, tmp_path: Path) -> None:
+    assert refusal(text, tmp_path) == f"{place}: {said}"

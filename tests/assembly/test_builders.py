@@ -7,12 +7,12 @@ from typing import Any, get_args
 import pytest
 from guides import words
 from places import ROOT, SCENES
+from scene_texts import edited, refusal, refusal_at
 
 from tol3d import load_scene, run_scene
 from tol3d.assembly.grammar.builders import BuilderUnion
 from tol3d.cad.solids.cad import solid_of
 from tol3d.cad.solids.numbered_parts import Housing
-from tol3d.errors import SceneError
 from tol3d.simulate import Overrides
 from tol3d.strict import Strict
 
@@ -107,15 +107,6 @@ def test_a_housing_that_opens_at_its_front_has_the_faces_that_the_page_says() ->
     assert top - front == {"front", "inside front", "inside back"}
 
 
-def refused(old: str, new: str, folder: Path, text: str = TEXT) -> str:
-    assert text.count(old) == 1, old
-    path = folder / "scene.yaml"
-    path.write_text(text.replace(old, new), "utf-8")
-    with pytest.raises(SceneError) as caught:
-        load_scene(path)
-    return str(caught.value).removeprefix(f"{path}:")
-
-
 WRONG = {
     "hole outside the plate": (
         "screw 1: {at: [-120 mm, -60 mm], diameter: 9 mm}",
@@ -159,7 +150,7 @@ WRONG = {
 
 @pytest.mark.parametrize(("old", "new", "message"), WRONG.values(), ids=WRONG.keys())
 def test_a_wrong_builder_is_refused_where_it_stands(old: str, new: str, message: str, tmp_path: Path) -> None:
-    said = refused(old, new, tmp_path)
+    said = refusal_at(edited(TEXT, (old, new)), tmp_path)
     assert message in said
     assert "\n" not in said
 
@@ -183,11 +174,7 @@ WRONG_LINKAGES = {
         "parts.rod 2.builder: a rod of 18 mm is not thinner than its balls of 16 mm",
     ),
     "no ring of teeth": ("reach: 95 deg", "reach: 10 deg", "no ring of teeth ends within a reach of 10 deg"),
-    "two teeth": (
-        "teeth: 25, module",
-        "teeth: 2, module",
-        "gear 1.builder.teeth: expected a number of at least 3",
-    ),
+    "two teeth": ("teeth: 25, module", "teeth: 2, module", "gear 1.builder.teeth: expected a number of at least 3"),
     "another pole": ("pole: tooth", "pole: flank", "parts.gear 1.builder.pole: expected tooth or space"),
     "a place off its seat": (
         "at: [32 mm, 0 mm, 24 mm]",
@@ -199,7 +186,7 @@ WRONG_LINKAGES = {
 
 @pytest.mark.parametrize(("old", "new", "message"), WRONG_LINKAGES.values(), ids=WRONG_LINKAGES.keys())
 def test_a_wrong_part_of_a_linkage_is_refused_where_it_stands(old: str, new: str, message: str, tmp_path: Path) -> None:
-    said = refused(old, new, tmp_path, (SCENES / "spherical_drive.yaml").read_text("utf-8"))
+    said = refusal(edited((SCENES / "spherical_drive.yaml").read_text("utf-8"), (old, new)), tmp_path)
     assert message in said
     assert "\n" not in said
 

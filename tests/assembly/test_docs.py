@@ -10,6 +10,7 @@ from guides import quoted, text_of
 from places import SCENES
 from ruamel.yaml import YAML
 from said_fields import fields_said, fields_within, unsaid
+from scene_texts import scene_of
 
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.assembly.grammar.builders import OwnFileSpec
@@ -68,8 +69,7 @@ DRAWINGS = [text for text in quoted("drawings") if text.startswith("scene:")]
 
 def drawn(text: str, folder: Path) -> Scene:
     """A scene of the page of drawings."""
-    (folder / "drawing.yaml").write_text(text, "utf-8")
-    return load_scene(folder / "drawing.yaml")
+    return scene_of(text, folder)
 
 
 # the scenes --------------------------------------------------------------------------------------------------

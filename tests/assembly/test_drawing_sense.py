@@ -62,10 +62,7 @@ def test_an_orientation_in_another_frame_than_its_feature_is_refused(tmp_path: P
     [
         (("circular_run_out, zone: {width: 0.2 mm}",), "diameter: 0.05 mm", "in which the axis does not lean"),
         (
-            (
-                "position, zone: {width: 0.2 mm, along: [1, 0, 0]}",
-                "position, zone: {width: 0.2 mm, along: [0, 1, 0]}",
-            ),
+            ("position, zone: {width: 0.2 mm, along: [1, 0, 0]}", "position, zone: {width: 0.2 mm, along: [0, 1, 0]}"),
             "diameter: 0.05 mm",
             "a lean in both of these zones is not supported",
         ),

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from assembly.drafts import frame
 from assembly_trials import Assembled
-from drafts import frame
 from numpy.typing import NDArray
 
 from tol3d.analyses.response import Values, response_of

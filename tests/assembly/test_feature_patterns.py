@@ -115,27 +115,15 @@ PATTERN = "7: parts.plate.features.hole.pattern"
 GRID = "{rows: 2, columns: 2, pitch: 30 mm}"
 CHAIN = "".join(f"  p{k}: {{kind: solid, like: {f'p{k - 1}' if k > 1 else 'third'}}}\n" for k in range(1, 9))
 BAD: dict[str, tuple[str, dict[str, str], str]] = {
-    "no rows": (
-        "{rows: 0, columns: 2, pitch: 3 mm}",
-        {},
-        f"{PATTERN}.rows: expected a number of at least 1, got 0",
-    ),
+    "no rows": ("{rows: 0, columns: 2, pitch: 3 mm}", {}, f"{PATTERN}.rows: expected a number of at least 1, got 0"),
     "no pitch": ("{columns: 2}", {}, '7: parts.plate.features.hole.pattern: expected the key "pitch" here, found none'),
-    "a bare pitch": (
-        "{columns: 2, pitch: 3}",
-        {},
-        f"{PATTERN}.pitch: expected a length with its unit",
-    ),
+    "a bare pitch": ("{columns: 2, pitch: 3}", {}, f"{PATTERN}.pitch: expected a length with its unit"),
     "three pitches": (
         "{columns: 2, pitch: [1 mm, 1 mm, 1 mm]}",
         {},
         f"{PATTERN}.pitch: expected a length, or two: between columns and between rows, got a",
     ),
-    "one": (
-        "{pitch: 3 mm}",
-        {},
-        f"{PATTERN}: expected 2 to 1000 features in rows and columns, got 1",
-    ),
+    "one": ("{pitch: 3 mm}", {}, f"{PATTERN}: expected 2 to 1000 features in rows and columns, got 1"),
     "too many": (
         "{rows: 40, columns: 40, pitch: 3 mm}",
         {},

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly import plates
 from assembly_trials import assembled
 from numpy.typing import NDArray
 
@@ -22,48 +23,22 @@ def scene(hole: tuple[float, float], slot: tuple[float, float], turn: float, *, 
     length = np.subtract(slot, hole)
     across = math.atan2(length[1], length[0]) + math.radians(90 + turn)
     normal = f"[{math.cos(across)!r}, {math.sin(across)!r}, 0]"
-    (x, y), (a, b) = hole, slot
-    holes = f"""
-      hole: {{kind: cylinder, at: [{x} mm, {y} mm, 0 mm], axis: [0, 0, 1], length: 8 mm, diameter: 8.1 mm, hole: true}}
-      slot: {{kind: slot, at: [{a} mm, {b} mm, 0 mm], normal: {normal}, extent: [14 mm, 8 mm], width: 8.06 mm}}"""
-    pins = "".join(
-        f"\n      pin {k}: {{kind: cylinder, at: [{u} mm, {v} mm, 0 mm], axis: [0, 0, 1], "
-        "length: 8 mm, diameter: 8 mm}"
-        for k, (u, v) in enumerate((hole, slot), 1)
-    )
-    carried, fixed = (pins, holes) if pins_placed else (holes, pins)
-    names = {"hole": "pin 1", "slot": "pin 2"}
-    parts = {"hole": "base", "pin": "plate"} if pins_placed else {"hole": "plate", "pin": "base"}
-    ends = [(f"{parts['hole']}.{name}", f"{parts['pin']}.{names[name]}") for name in HOLES]
-    placed = [pair[::-1] if pins_placed else pair for pair in ends]
-    pairs = "".join(f"      - {{from: {own}, to: {other}}}\n" for own, other in placed)
+    place = f"at: [{slot[0]} mm, {slot[1]} mm, 0 mm]"
+    holes = {
+        "hole": plates.hole((*hole, 0), 8.1, 8),
+        "slot": f"{{kind: slot, {place}, normal: {normal}, extent: [14 mm, 8 mm], width: 8.06 mm}}",
+    }
+    pins = {f"pin {k}": plates.pin((*own, 0), 8, 8) for k, own in enumerate((hole, slot), 1)}
+    base, plate = ("plate", "base") if pins_placed else ("base", "plate")  # of the pins, of the holes
+    ends = [(f"{plate}.{name}", f"{base}.{own}") for name, own in zip(holes, pins, strict=True)]
     sizes = "".join(
         f"  size {k}: {{kind: size, of: {name}, distribution: {{kind: constant, value: 0 mm}}}}\n"
         for k, name in enumerate(name for pair in ends for name in pair)
     )
-    return f"""
-scene: a plate on two pins
-parts:
-  base:
-    kind: solid
-    features:
-      top: {{kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, 1], extent: [200 mm, 200 mm]}}{fixed}
-  plate:
-    kind: solid
-    features:
-      bottom: {{kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [200 mm, 200 mm]}}{carried}
-tolerances:
-{sizes}moves:
-  table: {{kind: fix, part: base}}
-  lay:
-    kind: pin_and_hole
-    part: plate
-    relations: [{{kind: coincident, from: plate.bottom, to: base.top}}]
-    float: {{kind: random}}
-    pairs:
-{pairs}measures:
-  across: {{kind: gap, from: {ends[1][0]}, to: {ends[1][1]}, along: {normal}}}
-"""
+    upper, lower = (pins, holes) if pins_placed else (holes, pins)
+    across_slot = f"  across: {{kind: gap, from: {ends[1][0]}, to: {ends[1][1]}, along: {normal}}}"
+    pairs = [*zip(upper, lower, strict=True)]
+    return plates.two_plates(lower, upper, pairs, sizes, across_slot, move="lay", kind="pin_and_hole")
 
 
 @pytest.mark.parametrize("pins_placed", [False, True])

@@ -5,14 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from assembly_trials import Assembled, scene_of
+from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
 from places import SCENES
 from scipy.integrate import quad
 from scipy.stats import norm
 
 from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
-from tol3d.simulate import Overrides, simulation_of
 from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
@@ -48,7 +47,7 @@ def plate(folder: Path, x: float, y: float, laws: str = "normal, mean: 0 mm, sig
         old = f"of: table.pad {k}, distribution: {{kind: normal, lower: -0.15 mm, upper: 0.15 mm}}"
         assert old in text
         text = text.replace(old, f"of: table.pad {k}, distribution: {{kind: {law}}}")
-    return Assembled(simulation_of(scene_of(text, folder), Overrides()))
+    return assembled(text, folder)
 
 
 def found(own: Assembled, count: int = COUNT) -> tuple[dict[str, Array], dict[str, Array], dict[str, Codes], Array]:

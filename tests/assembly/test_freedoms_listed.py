@@ -70,10 +70,7 @@ def listed(scene: Path, start: str) -> list[tuple[str, ...]]:
             "door",
             "hanging",
             [
-                (
-                    "y, turns x, z",
-                    f"primary: door.{HOLDS} on body.{HOLDS}",
-                ),
+                ("y, turns x, z", f"primary: door.{HOLDS} on body.{HOLDS}"),
                 ("x, turns y", "secondary: door.upper hinge, lower hinge on body.upper hinge, lower hinge"),
                 ("z", "tertiary: door.upper hinge on body.upper hinge"),
             ],
@@ -294,6 +291,17 @@ def test_what_is_taken_and_left_is_six(scene: str) -> None:
         if plan.move.parts:  # a weld places none
             found = held_by(assembly, plan)
             assert sum(own.count for own in found.taken) + found.left.count == 6
+
+
+@pytest.mark.parametrize("scene", ["door", "hole_and_slot", "box_with_discs", "four_pads", "every_assembly_field"])
+def test_rows_about_another_point_are_those_of_arms_from_there(scene: str) -> None:
+    """(p - q) x n = p x n - q x n: what a move asks of each motion, about q and about 0."""
+    assembly, there = drawn(SCENES / f"{scene}.yaml").assembly, np.array([30.0, -80.0, 10.0])
+    for plan in planned(assembly).moves:
+        if plan.move.parts:  # a weld places none
+            for own, moved in zip(plan.asked(assembly, np.zeros(3)), plan.asked(assembly, there), strict=True):
+                turns = own.rows[:, 3:] - np.cross(there, own.rows[:, :3])
+                assert moved.rows == pytest.approx(np.hstack([own.rows[:, :3], turns]), abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(20))

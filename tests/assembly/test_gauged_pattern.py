@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
+from scene_texts import refusal
 from scipy.optimize import linprog, minimize
 
 from tol3d.assembly.placing.gauged_positions import GaugedPattern
 from tol3d.assembly.torsors.gauged_positions import TurnedOpening
-from tol3d.errors import SceneError
-from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.system.stated import stated
 from tol3d.study.system.trials import Trials
 from tol3d.study.trials.draws import drawn
@@ -261,28 +260,17 @@ WRONG = {
         "free",
         "expected shift, for all features lie on one axis; got shift_and_turn",
     ),
-    "no freedom": (
-        (f", {FREE}", ""),
-        "",
-        'expected the key "free" here, found none',
-    ),
+    "no freedom": ((f", {FREE}", ""), "", 'expected the key "free" here, found none'),
 }
 
 
 @pytest.mark.parametrize("case", WRONG)
 def test_what_is_wrong_is_said_once(case: str, tmp_path: Path) -> None:
-    (old, new), field, sentence = WRONG[case]
-    text = holes()
-    assert old in text
+    edit, field, sentence = WRONG[case]
     features = "    features:\n"
     another = "      another: {kind: cylinder, at: [9 mm, 0 mm, 0 mm], axis: [1, 0, 0], length: 9 mm, diameter: 3 mm}\n"
     below = "      below: {kind: axis, at: [0 mm, 0 mm, -20 mm], axis: [0, 0, 1], length: 9 mm}\n"
-    text = text.replace(old, new).replace(features, features + another + below)
+    text = holes().replace(*edit).replace(features, features + another + below)
     if case == "no size":
         text = "".join(line for line in text.splitlines(keepends=True) if not line.startswith(f"  {SHIFT}:"))
-    path = tmp_path / "scene.yaml"
-    path.write_text(text, "utf-8")
-    place = f"measures.{TURN}.{field}".removesuffix(".")
-    with pytest.raises(SceneError) as caught:
-        simulation_of(load(path), Overrides())
-    assert str(caught.value).partition(": ")[2] == f"{place}: {sentence}"
+    assert refusal(text, tmp_path) == f"measures.{TURN}.{field}".removesuffix(".") + f": {sentence}"

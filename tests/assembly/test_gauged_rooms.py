@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drafts import Draft, displacement, frame
+from assembly.drafts import Draft, displacement, frame
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 

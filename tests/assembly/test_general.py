@@ -3,11 +3,11 @@
 from pathlib import Path
 
 import pytest
+from scene_texts import scene_of
 
-from tol3d import SceneError, load_scene
+from tol3d import SceneError
 from tol3d.report.check import drawn_limits
 from tol3d.report.page import Table
-from tol3d.scene import Scene
 from tol3d.statistics.standards import iso_2768
 
 PLATE = """scene: plate
@@ -38,15 +38,9 @@ measures: {play: {kind: normal_backlash, of: mesh}}
 """
 
 
-def scene_of(folder: Path, text: str) -> Scene:
-    path = folder / "scene.yaml"
-    path.write_text(text, "utf-8")
-    return load_scene(path)
-
-
 def test_sizes_without_a_tolerance_take_it_and_others_keep_theirs(tmp_path: Path) -> None:
     """Limits by ISO 2768-1, Table 1: 8 mm, class m: 0.2 mm."""
-    scene = scene_of(tmp_path, PLATE)
+    scene = scene_of(PLATE, tmp_path)
     assert list(scene.tolerances) == ["fitted size", "ball", "size of plate bore"]
     assert scene.origin.general == ("size of plate bore",)
     law = scene.distributed["size of plate bore"].distribution.resolve(scene.files)
@@ -64,11 +58,11 @@ def test_sizes_without_a_tolerance_take_it_and_others_keep_theirs(tmp_path: Path
 
 def test_a_centre_distance_takes_it(tmp_path: Path) -> None:
     """61 mm, class c: 0.8 mm."""
-    scene = scene_of(tmp_path, GEARS)
+    scene = scene_of(GEARS, tmp_path)
     (name,) = scene.origin.general
     assert scene.distributed[name].distribution.resolve(scene.files).limits == (-0.8, 0.8)
     own = GEARS + "tolerances: {own: {kind: centre_distance, of: mesh, distribution: ±0.02 mm}}\n"
-    assert list(scene_of(tmp_path, own).tolerances) == ["own"]
+    assert list(scene_of(own, tmp_path).tolerances) == ["own"]
 
 
 @pytest.mark.parametrize(
@@ -82,7 +76,7 @@ def test_a_centre_distance_takes_it(tmp_path: Path) -> None:
 )
 def test_what_makes_no_sense_is_refused_in_a_line(tmp_path: Path, old: str, new: str, words: str) -> None:
     with pytest.raises(SceneError, match=words):
-        scene_of(tmp_path, PLATE.replace(old, new))
+        scene_of(PLATE.replace(old, new), tmp_path)
 
 
 def test_angles_by_the_shorter_leg() -> None:

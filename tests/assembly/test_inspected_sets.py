@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.composite_plate import HOLES, columns, plate
 from assembly_trials import Assembled, assembled
-from composite_plate import HOLES, columns, plate
 from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scale import SIGMA, stack
+from scene_texts import scene_of
 
-from tol3d import Overrides, load_scene, run_scene
+from tol3d import Overrides, run_scene
 from tol3d.study.effects.first_order import first_orders
 from tol3d.study.results.task import materials_of, method_of
 from tol3d.study.trials.overrides import simulation_of
@@ -47,9 +48,7 @@ def test_the_corner_of_the_first_block_rises_by_eleven_and_nine_sixteenths_and_n
 
 
 def test_both_methods_have_the_slopes_of_every_locator_of_a_stack(tmp_path: Path) -> None:
-    path = tmp_path / "stack.yaml"
-    path.write_text(stack(6, 3), "utf-8")
-    simulation = simulation_of(load_scene(path), Overrides())
+    simulation = simulation_of(scene_of(stack(6, 3), tmp_path), Overrides())
     found = first_orders(simulation, method_of(simulation, materials_of(simulation)), simulation.system.measures)
     for reader in range(3):
         expected = slopes(5 - reader, reader)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drafts import Draft, displacement, frame
+from assembly.drafts import Draft, displacement, frame
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
@@ -129,11 +129,7 @@ def on_pin(own: dict[str, Array]) -> Motions:
     off = [own[f"bore start {c}"] - (own[f"pin start {c}"] + own[f"pin end {c}"]) / 2 for c in "xy"]
     along, across = way[0] * off[0] + way[1] * off[1], way[0] * off[1] - way[1] * off[0]
     turn, near = across / np.hypot(75, 35), np.clip(along, -ROOM, ROOM)
-    return (
-        near * way[0] - own["bore start x"] + 25 * turn,
-        near * way[1] - own["bore start y"] - 20 * turn,
-        turn,
-    )
+    return (near * way[0] - own["bore start x"] + 25 * turn, near * way[1] - own["bore start y"] - 20 * turn, turn)
 
 
 @pytest.mark.parametrize(("words", "by_hand"), [("side", on_side), ("slot", on_slot), ("pin", on_pin)])
@@ -200,10 +196,7 @@ def test_both_methods_differ_by_second_order(words: str) -> None:
     left = []
     _, bare = plate(words, 0.08, Floating("centred"))
     rng = np.random.default_rng(7)
-    off, rays = (
-        rng.normal(0.0, 0.01, (12, bare.width)),
-        rng.uniform(-1.0, 1.0, (12, 7)),
-    )
+    off, rays = (rng.normal(0.0, 0.01, (12, bare.width)), rng.uniform(-1.0, 1.0, (12, 7)))
     for factor in (1.0, 0.1):
         drawn = Floating("random", slice(bare.width, bare.width + 7))
         _, assembly = plate(words, 0.08 * factor, drawn, 7)

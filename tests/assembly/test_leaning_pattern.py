@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from assembly_trials import Assembled, assembled
+from assembly.plates import hole, pin, two_plates
+from assembly_trials import Assembled, assembled, point
 from numpy.typing import NDArray
 from scipy.optimize import minimize, nnls
 
@@ -28,56 +29,35 @@ NUDGE = 1e-6
 
 def text(at: Array, is_slot: NDArray[np.bool_], clearance: float, floating: str) -> str:
     """Plates with pins of 10 mm at (x, y) in holes, or in slots along x."""
-    features: dict[str, str] = {"lower": "", "upper": ""}
-    tolerances, pairs = "", ""
+    features: dict[str, dict[str, str]] = {"lower": {}, "upper": {}}
+    tolerances = ""
     for k, (x, y) in enumerate(at):
-        place = f"at: [{x} mm, {y} mm, {LENGTH / 2} mm]"
-        pin, hole = f"{place}, axis: [0, 0, 1], length: {LENGTH} mm", f"diameter: {10 + clearance} mm, hole: true"
-        slot = f"{place}, normal: [0, 1, 0], along: [1, 0, 0], extent: [{2 * HALF_SLOT} mm, {LENGTH} mm]"
-        features["lower"] += f"      pin {k}: {{kind: cylinder, {pin}, diameter: 10 mm}}\n"
-        if is_slot[k]:
-            features["upper"] += f"      hole {k}: {{kind: slot, {slot}, width: {10 + clearance} mm}}\n"
-        else:
-            features["upper"] += f"      hole {k}: {{kind: cylinder, {pin}, {hole}}}\n"
+        place, wide = (x, y, LENGTH / 2), 10 + clearance
+        faces = f"at: [{x} mm, {y} mm, {LENGTH / 2} mm], normal: [0, 1, 0], along: [1, 0, 0]"
+        slot = f"{{kind: slot, {faces}, extent: [{2 * HALF_SLOT} mm, {LENGTH} mm], width: {wide} mm}}"
+        features["lower"][f"pin {k}"] = pin(place, 10, LENGTH)
+        features["upper"][f"hole {k}"] = slot if is_slot[k] else hole(place, wide, LENGTH)
         for part, name, is_flat in (("lower", f"pin {k}", False), ("upper", f"hole {k}", is_slot[k])):
             zone = f"zone: {{{'width' if is_flat else 'diameter'}: 5 mm}}, law: {{kind: process, {SPREAD}}}"
             tolerances += f"  {name} axis: {{kind: position, of: {part}.{name}, {zone}}}\n"
             tolerances += f"  {name} size: {{kind: size, of: {part}.{name}, {SPREAD}}}\n"
-        pairs += f"      - {{from: upper.hole {k}, to: lower.pin {k}}}\n"
     x, y = at.mean(axis=0)
-    face = f"{{kind: plane, at: [{x} mm, {y} mm, 0 mm], normal: [0, 0, %d], extent: [200 mm, 200 mm]}}"
-    edge = f"{{kind: point, at: [{x + 100} mm, {y} mm, 0 mm]}}"
-    return f"""
-scene: plates with leaning pins
-parts:
-  lower:
-    kind: solid
-    features:
-      face: {face % 1}
-      edge: {edge}
-{features["lower"]}
-  upper:
-    kind: solid
-    features:
-      face: {face % -1}
-      edge: {edge}
-{features["upper"]}
-tolerances:
-{tolerances}
-moves:
-  table: {{kind: fix, part: lower}}
-  together:
-    kind: pattern
-    part: upper
-    relations: [{{kind: coincident, from: upper.face, to: lower.face}}]
-    pairs:
-{pairs}
-    float: {floating}
-measures:
-  slack: {{kind: slack, of: together, lower_limit: 0 mm}}
-  x: {{kind: gap, from: lower.edge, to: upper.edge, along: [1, 0, 0]}}
-  x at most: {{kind: gap, from: lower.edge, to: upper.edge, along: [1, 0, 0], over_play: largest}}
-"""
+    edge = {"edge": point((x + 100, y, 0))}
+    return two_plates(
+        features["lower"] | edge,
+        features["upper"] | edge,
+        [(f"hole {k}", f"pin {k}") for k in range(len(at))],
+        tolerances,
+        """
+  slack: {kind: slack, of: together, lower_limit: 0 mm}
+  x: {kind: gap, from: lower.edge, to: upper.edge, along: [1, 0, 0]}
+  x at most: {kind: gap, from: lower.edge, to: upper.edge, along: [1, 0, 0], over_play: largest}
+""",
+        names=("lower", "upper"),
+        move="together",
+        floating=floating,
+        middle=(x, y, 0),
+    )
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scene_texts import written
 from toys.registered import known
 
 from tol3d import Overrides, load_scene, open_run, run_scene
@@ -150,8 +151,7 @@ NO_READING = "its reading by torsors: expected `package.module:function`, got '{
 
 @pytest.fixture
 def scene(tmp_path: Path) -> Iterator[Path]:
-    path = tmp_path / "scene.yaml"
-    path.write_text(SCENE, encoding="utf-8")
+    path = written(SCENE, tmp_path)
     with known(OWN):
         yield path
 

@@ -3,12 +3,13 @@
 from pathlib import Path
 
 import pytest
+from scene_texts import scene_of
 
 from tol3d.analyses.rare_events import rare_event
 from tol3d.analyses.response import response_of
 from tol3d.analyses.tolerance_effects import effects
 from tol3d.errors import InputError
-from tol3d.simulate import Overrides, load, run_scene, simulation_of
+from tol3d.simulate import Overrides, run_scene, simulation_of
 
 SCENE = """
 scene: bare
@@ -40,8 +41,7 @@ def test_a_run_without_contributors_has_the_nominal_value_in_every_trial(tmp_pat
 
 
 def test_analyses_of_what_varies_refuse_a_scene_in_which_nothing_does(tmp_path: Path) -> None:
-    (tmp_path / "scene.yaml").write_text(SCENE, encoding="utf-8")
-    response = response_of(simulation_of(load(tmp_path / "scene.yaml")))
+    response = response_of(simulation_of(scene_of(SCENE, tmp_path)))
     words = "expected a scene with tolerances, got none: all its builds are the nominal one"
     with pytest.raises(InputError, match=words):
         effects(response)

@@ -62,11 +62,7 @@ SECOND = "  second: {kind: size, of: b.second, distribution: {kind: constant, va
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(
     "edits",
-    [
-        (),
-        (("{kind: random}", "{kind: centred}"),),
-        (("kind: pattern", "kind: pin_and_hole"), (TWO_PAIRS, ONE_PAIR)),
-    ],
+    [(), (("{kind: random}", "{kind: centred}"),), (("kind: pattern", "kind: pin_and_hole"), (TWO_PAIRS, ONE_PAIR))],
     ids=["random", "centred", "pin and hole"],
 )
 def test_the_slack_of_a_part_that_relations_hold_is_that_of_its_pose(

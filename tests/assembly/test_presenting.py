@@ -7,8 +7,8 @@ from typing import get_args
 import numpy as np
 import pytest
 import trimesh
+from assembly.datum_plate import plate
 from assembly_trials import constant
-from datum_plate import plate
 from numpy.typing import NDArray
 from places import SCENES
 

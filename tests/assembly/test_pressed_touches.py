@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drafts import Draft, displacement, frame, turned
+from assembly.drafts import Draft, displacement, frame, turned
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from assembly_trials import Assembled, scene_of
+from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d import run_scene
-from tol3d.simulate import Overrides, simulation_of
+from tol3d.simulate import Overrides
 from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ def cover(kind: str, key: str, folder: Path, further: str = "") -> Assembled:
     move = f"  cover on the base:\n    kind: {kind}\n    part: cover\n    {key}:\n{pairs}{further}"
     text = COVER[: COVER.index("  cover on the base:")] + move + COVER[COVER.index("\nmeasures:") :]
     text = text.replace("\nmoves:\n", f"\n{MORE}\nmoves:\n")
-    return Assembled(simulation_of(scene_of(text, folder), Overrides()))
+    return assembled(text, folder)
 
 
 FORCE = "    force: {direction: [-1, -1, -3], at: [62 mm, 38 mm, 2 mm]}\n"

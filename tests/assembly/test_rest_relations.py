@@ -80,10 +80,7 @@ def test_a_bore_stays_on_its_pin_while_the_plate_slides_down_to_the_highest_pad(
 
 @pytest.mark.parametrize(
     "relations",
-    [
-        (Relation("coincident", "plate.hole", "base.pin"),),
-        (Relation("coaxial", "plate.bore", "base.pin"),),
-    ],
+    [(Relation("coincident", "plate.hole", "base.pin"),), (Relation("coaxial", "plate.bore", "base.pin"),)],
     ids=["point on pin", "bore on pin"],
 )
 def test_both_methods_differ_by_terms_of_second_order(relations: tuple[Relation, ...]) -> None:

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.drafts import Draft, displacement, frame, moved_as_a_whole
+from assembly.framed_parts import FLAT, MOVES, base, cover, pairs, tolerances
 from assembly_trials import Assembled, assembled
-from drafts import Draft, displacement, frame, moved_as_a_whole
-from framed_parts import FLAT, MOVES, base, cover, pairs, tolerances
 from numpy.typing import NDArray
 from places import SCENES
 from scipy.optimize import least_squares

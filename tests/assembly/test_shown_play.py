@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from assembly.plates import hole, pin, two_plates
+from scene_texts import scene_of
 
 from tol3d.assembly.presenting.shown_assembly import ShownAssembly, display
 from tol3d.simulate import run_scene
@@ -9,42 +11,26 @@ from tol3d.study.runs.run import Run
 from tol3d.study.trials.overrides import Overrides
 
 # a plate on one pin: its hole has between 0.02 and 0.2 mm more than the pin, or less than nothing in one of 44 trials
-SCENE = """
-scene: play
-parts:
-  base:
-    kind: solid
-    features:
-      floor: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, 1], extent: [100 mm, 100 mm]}
-      pin: {kind: cylinder, at: [0 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: 10 mm}
-  plate:
-    kind: solid
-    features:
-      seat: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [100 mm, 100 mm]}
-      hole: {kind: cylinder, at: [0 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: 10.1 mm, hole: true}
-tolerances:
+SCENE = two_plates(
+    {"pin": pin((0, 0, 5), 10)},
+    {"hole": hole((0, 0, 5), 10.1)},
+    [("hole", "pin")],
+    """
   hole size: {kind: size, of: plate.hole, distribution: {kind: normal, mean: 0 mm, sigma: 0.05 mm}}
   pin size: {kind: size, of: base.pin, distribution: {kind: constant, value: 0 mm}}
-moves:
-  ground: {kind: fix, part: base}
-  plate on the pin:
-    kind: pin_and_hole
-    part: plate
-    relations:
-      - {kind: coincident, from: plate.seat, to: base.floor}
-    pairs: [{from: plate.hole, to: base.pin}]
-    float: {kind: random}
-measures:
+""",
+    """
   shift: {kind: gap, from: base.pin, to: plate.hole, along: [1, 0, 0]}
-  slack: {kind: slack, of: plate on the pin, lower_limit: 0 mm}
-"""
+  slack: {kind: slack, of: on, lower_limit: 0 mm}
+""",
+    kind="pin_and_hole",
+)
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     folder = tmp_path_factory.mktemp("play")
-    (folder / "play.yaml").write_text(SCENE, "utf-8")
-    return run_scene(folder / "play.yaml", overrides=Overrides(trials=400, seed=5), out=folder / "run")
+    return run_scene(scene_of(SCENE, folder), overrides=Overrides(trials=400, seed=5), out=folder / "run")
 
 
 def shift(shown: ShownAssembly) -> float:

@@ -12,6 +12,7 @@ import trimesh
 from numpy.typing import NDArray
 from of_kind import of_kind
 from rendering import renders
+from scene_texts import scene_of
 
 from tol3d.assembly.model import Axis, Plane, RoundPlane, Slot
 from tol3d.assembly.presenting import PRESENTER
@@ -22,7 +23,7 @@ from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError
 from tol3d.report import export_run, view_run
 from tol3d.report.page import page
-from tol3d.simulate import Overrides, load, run_scene, simulation_of
+from tol3d.simulate import Overrides, run_scene, simulation_of
 from tol3d.study.runs.run import Run
 
 Array = NDArray[np.float64]
@@ -214,9 +215,7 @@ def test_a_picture_is_written(run: Run, tmp_path: Path) -> None:
 def test_check_lists_solids_and_loads_no_cad_for_what_it_has_seen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    scene = tmp_path / "turned.yaml"
-    scene.write_text(SCENE, encoding="utf-8")
-    system = simulation_of(load(scene), Overrides()).system
+    system = simulation_of(scene_of(SCENE, tmp_path), Overrides()).system
     assert isinstance(system, AssemblySystem)
     expected = [
         ("base", "plate", "120 × 80 × 28", "-60, -40, 0", "60, 40, 28"),

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.drafts import Draft, frame, turned
 from assembly_trials import assembled
-from drafts import Draft, frame, turned
 from numpy.typing import NDArray
-from rigid_parts import RigidParts
+from oracles.rigid_parts import RigidParts
 
 from tol3d.assembly.grammar.measures.gap import SurfaceGapSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Measured, Plane, RoundPlane, Shape

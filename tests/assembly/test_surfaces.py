@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drafts import Draft, frame, turned
+from assembly.drafts import Draft, frame, turned
+from assembly.random_touches import KINDS, TWO, RandomTouch, random_touch
 from numpy.typing import NDArray
-from random_touches import KINDS, TWO, RandomTouch, random_touch
-from rigid_parts import RigidParts
+from oracles.rigid_parts import RigidParts
 from scipy.optimize import lsq_linear
 
 from tol3d.assembly.grammar.measures.gap import SurfaceGapSpec

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from assembly_trials import Assembled
+from assembly_trials import assembled
 from numpy.typing import NDArray
 from places import SCENES
+from scene_texts import edited, refusal, scene_of, written
 
 from tol3d import Overrides, Run, load_scene, run_scene
 from tol3d.errors import SceneError
@@ -53,8 +54,7 @@ study: {trials: 100, seed: 6}
 
 
 def run_of(text: str, folder: Path, trials: int = COUNT) -> Run:
-    path = folder / "scene.yaml"
-    path.write_text(text, "utf-8")
+    path = written(text, folder)
     return run_scene(path, overrides=Overrides(trials=trials), out=folder / "run")
 
 
@@ -127,9 +127,7 @@ def test_a_part_grows_evenly_in_frames_that_growth_shifts_alone(datums: str, tmp
     text = WARM.replace("DATUMS", datums)
     for depth, one in FLAT.items() if datums == f"[{ALL}]" else ():
         text = text.replace(f"mm, {depth} mm], axis", f"mm, {one} mm], axis")
-    path = tmp_path / "scene.yaml"
-    path.write_text(text, "utf-8")
-    made = Assembled(simulation_of(load_scene(path), Overrides()))
+    made = assembled(text, tmp_path)
     for method in METHODS:
         found = made.drawn(3, method)
         np.testing.assert_allclose(found["x"], 60 * 1.002, atol=1e-4, rtol=0)
@@ -141,10 +139,8 @@ def test_a_part_grows_evenly_in_frames_that_growth_shifts_alone(datums: str, tmp
 )
 def test_a_frame_that_growth_turns_is_refused(datums: str, named: str, tmp_path: Path) -> None:
     """Deeper holes farther out lean a pattern by least squares; a slot 20 mm beside its hole turns by 20 / 80."""
-    path = tmp_path / "scene.yaml"
-    path.write_text(WARM.replace("DATUMS", datums), "utf-8")
     with pytest.raises(SceneError, match=f"keeps upright, got {re.escape(named)}"):
-        simulation_of(load_scene(path), Overrides())
+        simulation_of(scene_of(WARM.replace("DATUMS", datums), tmp_path), Overrides())
 
 
 def test_gears_and_solid_parts_have_one_temperature() -> None:
@@ -156,12 +152,8 @@ def test_gears_and_solid_parts_have_one_temperature() -> None:
 
 
 def test_a_part_that_does_not_grow_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(BAR.replace("    expansion: 23e-6 1/K\n", ""), "utf-8")
-    with pytest.raises(SceneError) as caught:
-        load_scene(path)
-    lines = [line for line in str(caught.value).splitlines() if "expansion" in line]
-    assert [line.partition(": ")[2] for line in lines] == [
+    said = refusal(edited(BAR, ("    expansion: 23e-6 1/K\n", "")), tmp_path)
+    assert [line for line in said.splitlines() if "expansion" in line] == [
         "tolerances.oven.of[1]: expected a part with its coefficient of expansion, got 'bar' without expansion:",
         "tolerances.current.of[0]: expected a part with its coefficient of expansion, got 'bar' without expansion:",
     ]

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 from assembly.placing.built_by_numbers import posed
 from assembly.placing.one_sided_parts import pads
+from assembly.plates import hole, pin, two_plates
 from assembly.test_shifted_coordinates import askew
-from assembly_trials import Assembled, assembled
-from cutting_planes import cut
+from assembly_trials import Assembled, assembled, point
 from numpy.typing import NDArray
+from oracles.cutting_planes import cut
 
 from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
 from tol3d.assembly.placing import method as placing
@@ -200,43 +201,27 @@ def test_a_plate_on_tied_pads_has_no_unique_pose_from_a_nanometre_s_millionth_on
     np.testing.assert_allclose(values, highs, rtol=0, atol=2e-12)
 
 
-PUSHED = """
-scene: a plate on two pins
-parts:
-  base:
-    kind: solid
-    features:
-      top: {kind: plane, at: [50 mm, 0 mm, 0 mm], normal: [0, 0, 1], extent: [100 mm, 50 mm]}
-      pin 1: {kind: cylinder, at: [0 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: 10 mm}
-      pin 2: {kind: cylinder, at: [100 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: 10 mm}
-      q: {kind: point, at: [0 mm, 0 mm, 0 mm]}
-      r: {kind: point, at: [100 mm, 0 mm, 0 mm]}
-  plate:
-    kind: solid
-    features:
-      bottom: {kind: plane, at: [50 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [100 mm, 50 mm]}
-      hole 1: {kind: cylinder, at: [0 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: 10.1 mm, hole: true}
-      hole 2: {kind: cylinder, at: [100 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: WIDE mm, hole: true}
-      q: {kind: point, at: [0 mm, 0 mm, 0 mm]}
-      r: {kind: point, at: [100 mm, 0 mm, 0 mm]}
-tolerances:
+ENDS = {"q": point((0, 0, 0)), "r": point((100, 0, 0))}
+SIZES = """
   size 1: {kind: size, of: base.pin 1, distribution: {kind: constant, value: 0 mm}}
   size 2: {kind: size, of: base.pin 2, distribution: {kind: constant, value: 0 mm}}
   size 3: {kind: size, of: plate.hole 1, distribution: {kind: uniform, lower: -0.02 mm, upper: 0.02 mm}}
   size 4: {kind: size, of: plate.hole 2, distribution: {kind: constant, value: 0 mm}}
-moves:
-  fixed: {kind: fix, part: base}
-  on:
-    kind: pattern
-    part: plate
-    relations: [{kind: coincident, from: plate.bottom, to: base.top}]
-    pairs: [{from: PAIR 1}, {from: PAIR 2}]
-    float: {kind: toward, along: ALONG, at: plate.q}
-measures:
+"""
+READ = """
   qx: {kind: gap, from: base.q, to: plate.q, along: [1, 0, 0]}
   qy: {kind: gap, from: base.q, to: plate.q, along: [0, 1, 0]}
   ry: {kind: gap, from: base.r, to: plate.r, along: [0, 1, 0]}
 """
+
+
+def pushed_plate(wide: float, along: tuple[float, float]) -> str:
+    """A plate on two pins of 10 mm, of which one has a hole of another diameter [mm], pushed as far as it goes."""
+    pins = {"pin 1": pin((0, 0, 5), 10), "pin 2": pin((100, 0, 5), 10)}
+    holes = {"hole 1": hole((0, 0, 5), 10.1), "hole 2": hole((100, 0, 5), wide)}
+    pairs, floating = [*zip(holes, pins, strict=True)], f"{{kind: toward, along: {[*along, 0.0]}, at: plate.q}}"
+    return two_plates(pins | ENDS, holes | ENDS, pairs, SIZES, READ, floating=floating, middle=(50, 0, 0))
+
 
 FLAT = 0.06 * np.sqrt(2e-12)
 """mm; of a circle of 0.06 mm what lies within a gap of 1e-12 of its radius, where interior points may end."""
@@ -248,9 +233,7 @@ def test_a_hole_is_pushed_as_far_as_its_own_clearance_whichever_way(
     along: tuple[float, float], wide: float, tmp_path: Path
 ) -> None:
     """The other hole leaves a turn about this one open, which its clearance centres to second order of 0.05 mm."""
-    pins = "plate.hole {0}, to: base.pin {0}"
-    text = PUSHED.replace("WIDE", str(wide)).replace("ALONG", str([*along, 0.0]))
-    text = text.replace("PAIR 1", pins.format(1)).replace("PAIR 2", pins.format(2))
+    text = pushed_plate(wide, along)
     elsewhere = "placed: {at: [300 mm, -200 mm, 70 mm], z: [0, 0.6, 0.8], x: [0.6, 0.64, -0.48]}"
     for place, bound in (("", 1e-9), (elsewhere, FLAT)):
         made = assembled(text.replace("kind: solid\n", f"kind: solid\n    {place}\n"), tmp_path)

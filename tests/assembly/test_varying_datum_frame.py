@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.datum_plate import SIGMAS, covariance, plate
 from assembly_trials import assembled, constant, normal
-from datum_plate import SIGMAS, covariance, plate
 from scipy.integrate import dblquad
 
 from tol3d.errors import SceneError

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from assembly_trials import assembled, normal, point
 from numpy.typing import NDArray
+from scene_texts import refusal
 from scipy import integrate
 from scipy.optimize import minimize
 from scipy.stats import halfnorm, norm, rayleigh
@@ -15,8 +16,7 @@ from tol3d.assembly.placing.method import features_placed
 from tol3d.assembly.torsors.gauged_positions import CommonOpening
 from tol3d.contact.certify import certificate
 from tol3d.contact.openings import opening
-from tol3d.errors import SceneError
-from tol3d.simulate import Overrides, load, run_scene, simulation_of
+from tol3d.simulate import Overrides, run_scene
 from tol3d.study.system.stated import stated
 from tol3d.study.trials.draws import drawn
 
@@ -275,11 +275,7 @@ def test_the_methods_differ_by_second_order(tmp_path: Path) -> None:
 BOTH = "holes: [s0.hole, s1.hole]"
 WRONG = {
     "one hole": ("holes: [s0.hole]", "measures.bolt.holes", "expected a list of 2 to 8 holes, got a list of 1"),
-    "a hole twice": (
-        "holes: [s0.hole, s0.hole]",
-        "measures.bolt.holes",
-        "expected each hole once, got 's0.hole'",
-    ),
+    "a hole twice": ("holes: [s0.hole, s0.hole]", "measures.bolt.holes", "expected each hole once, got 's0.hole'"),
     "no hole": (
         "holes: [s0.hole, s1.pin]",
         "measures.bolt.holes[1]",
@@ -293,19 +289,13 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("case", WRONG)
-def test_what_is_wrong_is_said_once(case: str, tmp_path: Path) -> None:
-    named, place, sentence = WRONG[case]
+@pytest.mark.parametrize(("named", "place", "said"), WRONG.values(), ids=WRONG)
+def test_what_is_wrong_is_said_once(named: str, place: str, said: str, tmp_path: Path) -> None:
     size = "length: 10 mm, diameter: 8.4 mm"
     others = (
         f"      pin: {{kind: cylinder, at: [9 mm, 0 mm, 0 mm], axis: [0, 0, 1], {size}}}\n"
         f"      side: {{kind: cylinder, at: [0 mm, 0 mm, 0 mm], axis: [1, 0, 0], {size}, hole: true}}\n"
     )
     text = sheets(2).replace(BOTH, named)
-    second = text.index("  s1:\n")
-    at = text.index("      hole:", second)
-    path = tmp_path / "scene.yaml"
-    path.write_text(text[:at] + others + text[at:], "utf-8")
-    with pytest.raises(SceneError) as caught:
-        simulation_of(load(path), Overrides())
-    assert str(caught.value).partition(": ")[2] == f"{place}: {sentence}"
+    at = text.index("      hole:", text.index("  s1:\n"))
+    assert refusal(text[:at] + others + text[at:], tmp_path) == f"{place}: {said}"

@@ -6,11 +6,9 @@ from pathlib import Path
 import pytest
 from fixtures import Command
 from places import SCENES
+from scene_texts import Edit, edited, refusal, refusal_at, written
 
-from tol3d.errors import InputError, SceneError
-from tol3d.simulate import Overrides, load, simulation_of
-
-COVER = (SCENES / "cover_on_base.yaml").read_text("utf-8")
+COVER, TWO_PLATES = ((SCENES / f"{name}.yaml").read_text("utf-8") for name in ("cover_on_base", "two_plates"))
 PARTS, TOLERANCES, MEASURES = "\nparts:\n", "\ntolerances:\n", "\nmeasures:\n"
 LEDGE = "ledge: {kind: plane, at: [9 mm, 9 mm, 9 mm], normal: [0, 0, 1], radius: 4 mm}"
 NEAR = "near: {kind: point, at: [50 mm, 10 mm, 0 mm]}"
@@ -21,16 +19,6 @@ BASE_HOLE = (
 BACK = "{kind: perpendicularity, of: base.back, zone: {width: 0.02 mm}, law: {kind: uniform}, datums: [floor]}"
 SPREAD = "distribution: {kind: uniform, lower: 0 um, upper: 5 um}"
 HOLES = "to: cover.hole, along: [1, 0, 0]"
-
-Edit = tuple[str, str]
-
-
-def edited(edits: Sequence[Edit]) -> str:
-    text = COVER
-    for old, new in edits:
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return text
 
 
 def added(section: str, entry: str) -> Edit:
@@ -45,14 +33,6 @@ def changed(line: str, old: str, new: str) -> Edit:
 def located(kind: str, key: str, *pairs: str) -> Edit:
     listed = "".join(f"      - {pair}\n" for pair in pairs)
     return LOCATED, f"  cover on the base:\n    kind: {kind}\n    part: cover\n    {key}:\n{listed}"
-
-
-def refused(edits: Sequence[Edit], folder: Path) -> str:
-    path = folder / "scene.yaml"
-    path.write_text(edited(edits), "utf-8")
-    with pytest.raises((SceneError, InputError)) as caught:
-        simulation_of(load(path), Overrides())
-    return str(caught.value).replace(f"{path}:", "")
 
 
 WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
@@ -184,8 +164,7 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "zone narrower than its refinement": (
         [
             added(
-                TOLERANCES,
-                "square: {kind: perpendicularity, of: base.hole, zone: {diameter: 0.3 mm}, datums: [floor]}",
+                TOLERANCES, "square: {kind: perpendicularity, of: base.hole, zone: {diameter: 0.3 mm}, datums: [floor]}"
             )
         ],
         "tolerances.base hole position.zone",
@@ -333,23 +312,21 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
 }
 
 
-@pytest.mark.parametrize("case", WRONG)
-def test_what_is_wrong_is_said_once_with_its_line(case: str, tmp_path: Path) -> None:
-    edits, place, sentence = WRONG[case]
-    line, _, message = refused(edits, tmp_path).partition(": ")
-    assert message == f"{place}: {sentence}"
-    written = edited(edits).splitlines()[int(line) - 1]
+@pytest.mark.parametrize(("edits", "place", "said"), WRONG.values(), ids=WRONG)
+def test_what_is_wrong_is_said_once_with_its_line(edits: Sequence[Edit], place: str, said: str, tmp_path: Path) -> None:
+    text = edited(COVER, *edits)
+    line, _, message = refusal_at(text, tmp_path).partition(": ")
+    assert message == f"{place}: {said}"
+    there = text.splitlines()[int(line) - 1]
     keys = [key.partition("[")[0] for key in place.split(".")[1:]]
-    assert any(f"{key}:" in written for key in keys) or ("[" in place and written.strip().startswith("- "))
+    assert any(f"{key}:" in there for key in keys) or ("[" in place and there.strip().startswith("- "))
 
 
 @pytest.mark.parametrize("case", ["three locators on a line", "gears and assemblies"])
 @pytest.mark.parametrize("command", ["check", "run"])
 def test_the_command_line_ends_with_2(case: str, command: str, tol3d: Command, tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
     edits, place, _ = WRONG[case]
-    path.write_text(edited(edits), "utf-8")
-    code, out, err = tol3d(command, str(path))
+    code, out, err = tol3d(command, str(written(edited(COVER, *edits), tmp_path)))
     assert (code, out) == (2, "")
     assert place in err
     assert "Traceback" not in err
@@ -357,11 +334,8 @@ def test_the_command_line_ends_with_2(case: str, command: str, tol3d: Command, t
 
 def test_pins_beside_their_holes_are_a_message(tmp_path: Path) -> None:
     """4 mm off, where pins and holes have tenths of a millimetre of room: no deviation of the scene closes that."""
-    path = tmp_path / "scene.yaml"
-    text = (SCENES / "two_plates.yaml").read_text("utf-8")
-    path.write_text(text.replace("hole 1: {kind: cylinder, at: [0 mm,", "hole 1: {kind: cylinder, at: [4 mm,"), "utf-8")
-    with pytest.raises(SceneError, match=r"measures\.edge: cannot be read even without deviations: no build"):
-        simulation_of(load(path), Overrides())
+    text = edited(TWO_PLATES, ("hole 1: {kind: cylinder, at: [0 mm,", "hole 1: {kind: cylinder, at: [4 mm,"))
+    assert "measures.edge: cannot be read even without deviations: no build" in refusal(text, tmp_path)
 
 
 def test_an_engine_of_gears_is_refused_as_an_option_too(tol3d: Command) -> None:

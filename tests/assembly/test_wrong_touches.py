@@ -1,12 +1,11 @@
 """Errors in a touch are reported once: place, expectation, what came, remedy."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from places import SCENES
-
-from tol3d.errors import SceneError
-from tol3d.simulate import Overrides, load, simulation_of
+from scene_texts import Edit, edited, refusal
 
 BOX = (SCENES / "box_with_discs.yaml").read_text("utf-8")
 DISC = "      - {from: lower disc.rim, to: box.left}"
@@ -96,17 +95,8 @@ WRONG = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", WRONG)
-def test_what_is_wrong_is_said_once_with_its_place(case: str, tmp_path: Path) -> None:
-    edits, place, sentence = WRONG[case]
-    text = BOX
-    for old, new in edits:
-        assert old in text
-        text = text.replace(old, new, 1)
-    path = tmp_path / "scene.yaml"
-    path.write_text(text, "utf-8")
-    with pytest.raises(SceneError) as caught:
-        simulation_of(load(path), Overrides())
-    line, _, message = str(caught.value).replace(f"{path}:", "").partition(": ")
-    assert message == f"{place}: {sentence}"
-    assert int(line) > 0
+@pytest.mark.parametrize(("edits", "place", "said"), WRONG.values(), ids=WRONG)
+def test_what_is_wrong_is_said_once_with_its_place(
+    edits: Sequence[Edit], place: str, said: str, tmp_path: Path
+) -> None:
+    assert refusal(edited(BOX, *edits), tmp_path) == f"{place}: {said}"

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from assembly_trials import Assembled, assembled
 from fixtures import Command
+from scene_texts import written
 from scipy.stats import kstest, norm
 
 from tol3d.errors import SceneError
@@ -90,8 +91,7 @@ def test_normals_that_do_not_know_the_zone(tmp_path: Path) -> None:
 
 def test_a_run_counts_what_is_out_of_drawing(tmp_path: Path) -> None:
     law = "{kind: process, distribution: {kind: normal, mean: 0 mm, sigma: " + repr(WIDTH / 6) + " mm}}"
-    scene = tmp_path / "scene.yaml"
-    scene.write_text(SCENE.format(law=law, outward=""), encoding="utf-8")
+    scene = written(SCENE.format(law=law, outward=""), tmp_path)
     count = 20_000
     run = run_scene(scene, overrides=Overrides(trials=count), out=tmp_path / "run")
     drawn = run.columns("profile.offset [um]", "profile.rise x [um]", "profile.rise y [um]")
@@ -168,8 +168,7 @@ def test_the_mean_of_a_process_offsets_a_face_and_does_not_tilt_it(tmp_path: Pat
 
 @pytest.mark.parametrize(("law", "words"), [("uniform", "uniform in its zone"), ("normal", "normal in its zone")])
 def test_a_result_names_the_law_of_every_zone_that_acts(tmp_path: Path, law: str, words: str) -> None:
-    scene = tmp_path / "scene.yaml"
-    scene.write_text(SCENE.format(law=f"{{kind: {law}}}", outward=""), encoding="utf-8")
+    scene = written(SCENE.format(law=f"{{kind: {law}}}", outward=""), tmp_path)
     measures = run_scene(scene, overrides=Overrides(trials=50), out=tmp_path / "run").summary["measures"]
     zones = {"tilt": "position", "true position": "position"}
     assert {name: own.get("laws") for name, own in measures.items()} == {
@@ -246,10 +245,7 @@ RINGS = {
         ("moves:", "  top: {kind: profile, of: plate.floor, zone: {width: 0.1 mm}, law: {kind: ring}}\nmoves:"),
         "expected uniform, normal or process, got ring of a profile of 'plate.floor'; a ring is of where an axis lies",
     ),
-    "orientation": (
-        ("  bored:", "  unread:"),
-        "got ring of a perpendicularity of 'plate.bore'; a ring is of where",
-    ),
+    "orientation": (("  bored:", "  unread:"), "got ring of a perpendicularity of 'plate.bore'; a ring is of where"),
 }
 
 

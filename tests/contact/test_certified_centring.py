@@ -8,7 +8,6 @@ import pytest
 from assembly.test_tied_patterns import tied
 from kept_assemblies import made
 from numpy.typing import NDArray
-from thinned import thinned
 
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.torsors import method as torsors
@@ -153,9 +152,7 @@ def test_interior_points_have_full_duals_where_an_offset_is_0(at: list[tuple[flo
     assert certificate(*stated, duals)[2, 0] == pytest.approx(1.0, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    "case", thinned(["pins 0", "gauges 12", "lean 0", "later datum 1", "bolts 0", "inspected 2"], 2)
-)
+@pytest.mark.parametrize("case", ["pins 0", "gauges 12", "lean 0", "later datum 1", "bolts 0", "inspected 2"])
 def test_what_kept_assemblies_ask_is_certified(case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every first round and push that either method asks for; rounds leave out multipliers below HELD."""
     read, solve = list[Array](), Programme.solve

@@ -170,9 +170,11 @@ def one_at_a_time(shape_deflection: float, made: AsMade, phis: Array) -> list[To
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scale", [0.002, 0.01])
-def test_no_pin_that_touches_first_is_screened_out(scale: float) -> None:
+@pytest.mark.parametrize(("scale", "tilt"), [(0.002, 0.0), (0.01, 0.0), (0.002, 4e-3)])
+def test_no_pin_that_touches_first_is_screened_out(scale: float, tilt: float) -> None:
     made, phis = erring(400, 1, scale, seed=11), around(400, 20)
+    tilts = np.random.default_rng(17).normal(0.0, tilt, (400, 1, 2))
+    made = replace(made, leans=leaning(tilts, 40.0))
     found = first_contact(contact_shape(PROFILE, WINDOW, 0.0), made, phis)
     alone = np.array([each.turns for each in one_at_a_time(0.0, made, phis)])
     # a pin that is idle at a position leaves the first of the thin ones: farther away

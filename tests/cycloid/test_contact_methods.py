@@ -4,22 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from cycloid_rests import drawn
 from cycloid_stages import CRANK_CIRCLE, PROFILE
 
 from tol3d.gearing.cycloid.exact.contact import ContactStage
 from tol3d.gearing.cycloid.first_order.linear import LinearStage
-from tol3d.gearing.cycloid.model.stage import Deviated
 
 STAGE = (PROFILE, 2, 3, CRANK_CIRCLE, 1.5, 0.7)
 ARC_SECOND = math.pi / 648_000
-
-
-def drawn(trials: int, scale: float, seed: int) -> Deviated:
-    """Deviations of everything, of some size [mm]; phases of the cranks by a hundredth of it [rad]."""
-    rng = np.random.default_rng(seed)
-    nothing = Deviated.nothing(trials, 40, 2, 3)
-    sizes = {name: scale / 100 if name == "crank_phases" else scale for name in nothing.__dataclass_fields__}
-    return Deviated(**{name: size * rng.standard_normal(getattr(nothing, name).shape) for name, size in sizes.items()})
 
 
 def test_what_first_order_neglects_shrinks_with_the_square_of_errors() -> None:

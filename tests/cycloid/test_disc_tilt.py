@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from places import SCENES
+from scene_texts import scene_of
 
 from tol3d import load_scene
 from tol3d.errors import SceneError
@@ -60,7 +61,5 @@ def test_rates_are_those_on_the_side_of_the_tilts() -> None:
 
 
 def test_discs_tilt_only_where_their_width_is_stated(tmp_path: Path) -> None:
-    scene = tmp_path / "scene.yaml"
-    scene.write_text(SCENE.read_text("utf-8").replace(", width: 8 mm, hole", ", hole"), "utf-8")
     with pytest.raises(SceneError, match=r"parts\.disc: expected the width of the disc, .* 'width: 20 mm'; got none"):
-        rv_system(load_scene(scene))
+        rv_system(scene_of(SCENE.read_text("utf-8").replace(", width: 8 mm, hole", ", hole"), tmp_path))

@@ -118,7 +118,7 @@ def test_rates_are_differences_of_the_analytic_method() -> None:
     rng = np.random.default_rng(2)
     method, own = LinearTurning(OWN), RVDeviated.nothing(OWN, 30)
     arrays = (own.sun_offset, own.planet_offset, own.stage.carrier_holes, own.stage.disc_offsets, own.stage.pins)
-    for each in (*arrays, own.sun_thickness, own.planet_thickness):
+    for each in (*arrays, own.sun_thickness, own.planet_thickness, own.stage.crank_phases):
         each[...] = rng.normal(0.0, 0.003, each.shape)
     turns: NDArray[np.float64] = rng.random(30)
     twice = np.stack([turns, turns], axis=1)  # at several positions cranks keep their angle
@@ -133,8 +133,8 @@ def test_rates_are_differences_of_the_analytic_method() -> None:
     )
     step, expected = 1e-9, np.zeros(30)
     for each, rate in zip(
-        (*arrays, own.sun_thickness, own.planet_thickness),
-        (*steps, rates.sun_thickness, rates.planet_thickness),
+        (*arrays, own.sun_thickness, own.planet_thickness, own.stage.crank_phases),
+        (*steps, rates.sun_thickness, rates.planet_thickness, rates.stage.crank_phases),
         strict=True,
     ):
         along = rng.normal(0.0, 1.0, each.shape)

@@ -12,6 +12,7 @@ from cycloid_stages import PROFILE, counted, erring, searched
 from numpy.typing import NDArray
 from places import SCENES
 from rv_250 import nothing, rv_250, stage_of
+from scene_texts import written
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.gearing.cycloid.exact.contact import contact_shape, first_contact
@@ -32,9 +33,7 @@ COUNTS = "  pins: {kind: cycloid_pins_near_contact, of: reducer, deflection: 2 u
 
 def with_counts(folder: Path, counts: str = COUNTS) -> Path:
     folder.mkdir(exist_ok=True)
-    path = folder / "scene.yaml"
-    path.write_text(TEXT.replace("\nstudy: {", f"{counts}\nstudy: {{"), "utf-8")
-    return path
+    return written(TEXT.replace("\nstudy: {", f"{counts}\nstudy: {{"), folder)
 
 
 def linear_gaps(radial: Array, pitch: Array, profile: Array, phi: float) -> list[tuple[float, float]]:

@@ -11,8 +11,9 @@ import pytest
 from numpy.typing import NDArray
 from oracles.playing_reducer import PlayingReducer
 from places import SCENES
+from scene_texts import scene_of
 
-from tol3d import SceneError, load_scene
+from tol3d import SceneError
 from tol3d.gearing.cycloid.first_order.linear_rest import LinearRest
 from tol3d.gearing.cycloid.reducer.resting import LinearResting, exact_turning
 from tol3d.gearing.cycloid.reducer.trials import RVTrials
@@ -38,9 +39,7 @@ SMALL = 30.0  # mm, the crank circle's radius
 
 
 def simulated(tmp_path: Path, text: str) -> Simulation:
-    path = tmp_path / "scene.yaml"
-    path.write_text(text, "utf-8")
-    return simulation_of(load_scene(path))
+    return simulation_of(scene_of(text, tmp_path))
 
 
 def turned(simulation: Simulation, method: str, trials: int) -> dict[str, Array]:

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from places import ROOT
+from scene_texts import scene_of
 
 import tol3d
-from tol3d import Scene, load_scene
+from tol3d import Scene
 from tol3d.errors import InputError, SceneError
 from tol3d.report.check import drawn_limits
 from tol3d.report.page import Table
@@ -30,9 +31,7 @@ NORMAL = "default_law: {kind: normal, sigmas: 3}\n"
 
 
 def load(folder: Path, text: str) -> Scene:
-    path = folder / "scene.yaml"
-    path.write_text(text, encoding="utf-8")
-    return load_scene(path)
+    return scene_of(text, folder)
 
 
 def refusal(read: Callable[[], object]) -> str:

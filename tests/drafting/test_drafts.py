@@ -12,13 +12,14 @@ import pytest
 import yaml
 from fixtures import Command
 from foreign_parts import nist_file, slotted_block, solid, step_file
+from scene_texts import scene_of
 
 from tol3d.apps.drafting import scene_from
 from tol3d.apps.drafting.drawn_part import distance_entry, enveloped
 from tol3d.apps.drafting.entry import Entry, Scene, Wording
 from tol3d.apps.drafting.fixture import seat_and_pins, three_two_one
 from tol3d.apps.drafting.parts import drafted_parts, read_files
-from tol3d.apps.drafting.touching_faces import TOUCHING, overlap
+from tol3d.apps.drafting.touching_faces import TOUCHING, largest_bolt, overlap
 from tol3d.apps.drafting.words import Names, comment, scalar
 from tol3d.assembly.model import Cone
 from tol3d.assembly.system import AssemblySystem
@@ -27,7 +28,7 @@ from tol3d.cad.step.found_features import FoundFeature
 from tol3d.cad.step.reading import read_step
 from tol3d.files import FileContent, read_file
 from tol3d.scene import Scene as SceneOfFile
-from tol3d.simulate import Overrides, load, run_scene, simulation_of
+from tol3d.simulate import Overrides, run_scene, simulation_of
 from tol3d.study.system.stated import nominal_build
 from tol3d.study.trials.draws import drawn
 
@@ -126,8 +127,29 @@ def test_holes_in_line_are_bolted_and_faces_that_touch_are_laid_on_each_other(tm
     assert {own["bolt"]["diameter"] for own in move["pairs"]} == {
         "7.2 mm"
     }  # 8 mm less a tenth, for no position says it
-    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
-    simulation_of(load(tmp_path / "scene.yaml"), Overrides())
+    simulation_of(scene_of(text, tmp_path), Overrides())
+
+
+@pytest.mark.parametrize(
+    ("limits", "positions", "expected"),
+    [((8.9, 9.2), (0.2, 0.3), 8.6), ((9.1, 9.4), (0.3,), 8.7), (None, (0.3,), 8.7), ((8.9, 9.2), (), 8.01)],
+)
+def test_a_bolt_goes_through_the_hole_at_its_smallest_less_its_largest_position(
+    limits: tuple[float, float] | None, positions: tuple[float, ...], expected: float
+) -> None:
+    """A hole drawn at 9 mm with other limits: 8.9 less 0.3 mm; limits above 9 mm are not believed; a tenth without."""
+    hole = FoundFeature((4,), "cylinder", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), radius=4.5)
+    ends = {"features": [hole], "kind": ("diameter",), "limits": limits}
+    other = ends | {"features": [replace(hole, faces=(5,))], "limits": (1.0, 2.0)}
+    zones = [
+        (
+            SimpleNamespace(kind="position", magnitude=SimpleNamespace(value=own), feature=hole),
+            SimpleNamespace(how="said"),
+        )
+        for own in positions
+    ]
+    drawing = SimpleNamespace(tolerances=zones, dimensions=[SimpleNamespace(**own) for own in (ends, other)])
+    assert largest_bolt(SimpleNamespace(drawing=drawing), hole) == pytest.approx(expected)  # type: ignore[arg-type]
 
 
 def test_a_cone_is_laid_in_its_seat(tmp_path: Path) -> None:
@@ -139,8 +161,7 @@ def test_a_cone_is_laid_in_its_seat(tmp_path: Path) -> None:
     read = yaml.safe_load(text)
     (move,) = (own for own in read["moves"].values() if own["kind"] != "fix")
     assert (move["kind"], [own["kind"] for own in move["relations"]]) == ("mate", ["coincident"])
-    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
-    system = simulation_of(load(tmp_path / "scene.yaml"), Overrides()).system
+    system = simulation_of(scene_of(text, tmp_path), Overrides()).system
     assert isinstance(system, AssemblySystem)
     assert sum(isinstance(own.shape, Cone) for own in system.assembly.features.values()) == 2
 
@@ -149,8 +170,7 @@ def test_a_cone_is_laid_in_its_seat(tmp_path: Path) -> None:
 def test_a_gap_is_measured_between_the_nearest_parallel_faces(tmp_path: Path) -> None:
     """A block 20 mm wide whose underside stands 3 mm over the plate's top at z = 5."""
     text = drafted(tmp_path, {"plate": PLATE, "block": BLOCK.translate(cq.Vector(0, 0, 18))})
-    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
-    simulation = simulation_of(load(tmp_path / "scene.yaml"), Overrides())
+    simulation = simulation_of(scene_of(text, tmp_path), Overrides())
     system = simulation.system
     method = system.method("exact", system.materials("exact"))
     values = method.answers(nominal_build(system), system.measures).values
@@ -336,8 +356,7 @@ def test_a_slot_as_second_datum_closes_on_a_blade(tmp_path: Path) -> None:
 
 def scene_file(text: str, folder: Path) -> SceneOfFile:
     """A scene as a file, which is read."""
-    (folder / "scene.yaml").write_text(text, encoding="utf-8")
-    return load(folder / "scene.yaml")
+    return scene_of(text, folder)
 
 
 @pytest.mark.parametrize(

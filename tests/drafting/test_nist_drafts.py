@@ -11,6 +11,7 @@ import pytest
 import yaml
 from foreign_parts import nist_file
 from places import TESTS
+from scene_texts import scene_of
 
 from tol3d.apps.drafting import Draft, scene_from
 from tol3d.apps.drafting.drawn_part import SMALLEST_ZONE
@@ -18,7 +19,7 @@ from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.system import AssemblySystem
 from tol3d.files import FileContent
 from tol3d.numerics.arrays import Array
-from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.simulate import Overrides, simulation_of
 from tol3d.study.trials.draws import drawn
 
 TRIALS = 2000
@@ -67,8 +68,7 @@ class Drafted:
 
 def measured(text: str, folder: Path, count: int) -> tuple[dict[str, dict[str, Array]], dict[str, float]]:
     """Measures of both methods (trials,) [mm], and the upper limits."""
-    (folder / "scene.yaml").write_text(text, encoding="utf-8")
-    simulation = simulation_of(load(folder / "scene.yaml"), Overrides())
+    simulation = simulation_of(scene_of(text, folder), Overrides())
     system = simulation.system
     assert isinstance(system, AssemblySystem)
     trials = drawn(simulation, 0, count)
@@ -83,8 +83,7 @@ def measured(text: str, folder: Path, count: int) -> tuple[dict[str, dict[str, A
 
 
 @pytest.fixture(
-    scope="module",
-    params=[pytest.param(own, marks=() if own == CHEAPEST else pytest.mark.slow) for own in MODELS],
+    scope="module", params=[pytest.param(own, marks=() if own == CHEAPEST else pytest.mark.slow) for own in MODELS]
 )
 def drafted(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Drafted:
     """The scene of a model."""
@@ -161,8 +160,7 @@ def test_a_tolerance_that_is_said_reaches_its_zone_and_never_leaves_it(model: st
     text, draft = scene_from([content])
     text = text.replace("&zones {kind: normal}", "&zones {kind: uniform}")
     text = text.replace("distribution: {kind: normal,", "distribution: {kind: uniform,")
-    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
-    simulation = simulation_of(load(tmp_path / "scene.yaml"), Overrides())
+    simulation = simulation_of(scene_of(text, tmp_path), Overrides())
     system = simulation.system
     assert isinstance(system, AssemblySystem)
     method = system.method("exact", system.materials("exact"))
@@ -251,8 +249,7 @@ def test_distances_and_sizes_are_within_the_limits_of_the_file_and_reach_them(mo
             words = f"{{kind: inspected_size, of: '{spec['of']}{first}'}}"
         lines.append(f"  'asked {wanted[name]}': {words}")
     text = text.replace("\nmeasures:\n", "\nmeasures:\n" + "\n".join(lines) + "\n")
-    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
-    simulation = simulation_of(load(tmp_path / "scene.yaml"), Overrides())
+    simulation = simulation_of(scene_of(text, tmp_path), Overrides())
     system = simulation.system
     assert isinstance(system, AssemblySystem)
     values = (

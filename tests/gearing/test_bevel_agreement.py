@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from covering import covering
 from fixtures import EngineOf
 from gear_trials import gear_columns
 from of_kind import of_kind
@@ -19,6 +18,7 @@ from oracles import bevel_brute_force
 from oracles.bevel_brute_force import BevelMesh
 from oracles.plain import plain_bevel
 from scipy.spatial.transform import Rotation
+from sets import covering
 
 from tol3d import Scene
 from tol3d.gearing.builds.build import Build

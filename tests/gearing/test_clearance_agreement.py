@@ -15,6 +15,7 @@ from gear_trials import drawn_trials, gear_columns
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
 from places import SCENES
+from scene_texts import written
 from vectors import vector
 
 from tol3d import load_scene
@@ -37,9 +38,7 @@ def changed(folder: Path, *replacements: tuple[str, str]) -> Path:
     for old, new in replacements:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
-    path = folder / "scene.yaml"
-    path.write_text(text, "utf-8")
-    return path
+    return written(text, folder)
 
 
 def direction_of(gear: str, direction: str, sigma: Flank) -> tuple[float, float]:

@@ -3,13 +3,13 @@
 import math
 from pathlib import Path
 
-import deviating_pair
 import numpy as np
 import pytest
+from gearing import deviating_pair
 from numpy.typing import NDArray
 from oracles.deviated_flanks import DeviatedGear, DeviatedPair, active_rolls, between
+from scene_texts import scene_of
 
-from tol3d import load_scene
 from tol3d.gearing.builds.flank_offsets import FlankPlaces
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Model, Reading, model_from_scene
@@ -79,14 +79,20 @@ def test_a_barrel_has_its_form_deviation_within_the_range(range_: str, tmp_path:
     assert float(np.polyfit(np.linspace(-1.0, 1.0, 21), seen, 1)[0]) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_waves_count_over_the_range_and_slopes_beside_them_over_their_own(tmp_path: Path) -> None:
-    model = model_of(tmp_path, f"{FORM}, shape: wave, waves: 2, range: [39.5 mm, 42.5 mm]", SLOPE)
-    first, last = roll_at(39.5), roll_at(42.5)
+@pytest.mark.parametrize("teeth", [20, 60])  # the involute of 60 teeth begins above the base circle, at the root
+def test_waves_count_over_the_range_and_slopes_beside_them_over_their_own(teeth: int, tmp_path: Path) -> None:
+    apart, base = teeth + 30.2, teeth * math.cos(math.radians(20))
+    diameters = (2 * teeth - 0.5, 2 * teeth + 2.5)
+    wave = f"{FORM}, shape: wave, waves: 2, range: [{diameters[0]} mm, {diameters[1]} mm]"
+    text = deviating_pair.SCENE.format(tolerances=f"  wave: {{{wave}}}\n  slope: {{{SLOPE}}}", flank="right")
+    text = text.replace("teeth: 20", f"teeth: {teeth}").replace("50.2 mm", f"{apart} mm")
+    model = model_from_scene(scene_of(text, tmp_path))
+    first, last = (math.sqrt((own / 2 / base) ** 2 - 1) for own in diameters)
+    begin, tip = active_rolls(teeth, 30, 2.0, apart)
     for share in (0.0, 0.1, 0.25, 0.6, 1.0, 1.1):
         roll = first + share * (last - first)
-        wave = 5.0 * math.cos(4 * math.pi * (share - 0.5))
-        slope = 10.0 * ((roll - ACTIVE[0]) / (TIP - ACTIVE[0]) - 0.5)
-        assert out_um(model, RIGHT, roll) == pytest.approx(wave + slope)
+        out = 5.0 * math.cos(4 * math.pi * (share - 0.5)) + 10.0 * ((roll - begin) / (tip - begin) - 0.5)
+        assert out_um(model, RIGHT, roll) == pytest.approx(out)
 
 
 def test_the_smallest_begin_of_all_mates_counts(tmp_path: Path) -> None:
@@ -95,8 +101,7 @@ def test_the_smallest_begin_of_all_mates_counts(tmp_path: Path) -> None:
     other = "{kind: mesh, driver: pinion, driven: long, centre_distance: 50.2 mm, azimuth: 150 deg}"
     text = text.replace("moves:", f"moves:\n  other: {other}")
     long = "  long: {kind: spur_gear, teeth: 30, module: 2 mm, face_width: 10 mm, addendum: 1.1, dedendum: 1.25}\n"
-    (tmp_path / "scene.yaml").write_text(text.replace("tolerances:", f"{long}tolerances:"), "utf-8")
-    model = model_from_scene(load_scene(tmp_path / "scene.yaml"))
+    model = model_from_scene(scene_of(text.replace("tolerances:", f"{long}tolerances:"), tmp_path))
     other_tip = math.sqrt(32.2**2 - (1.5 * BASE) ** 2)
     first = (math.sqrt(50.2**2 - (2.5 * BASE) ** 2) - other_tip) / BASE
     assert first < ACTIVE[0]

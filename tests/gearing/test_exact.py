@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from covering import covering
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numba import njit
@@ -21,8 +20,9 @@ from oracles import brute_force, exact_eccentric, search
 from oracles.involute_gear import InvoluteGear
 from oracles.plain import plain_spur
 from oracles.poses import world_from_gears
-from oracles.random_builds import Builds, Spread, random_builds, searched_spurs
+from oracles.random_builds import Builds, Spread, random_builds, searched_spurs, within_reach_of
 from scipy.spatial.transform import Rotation
+from sets import covering
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.builds.build import Build
@@ -104,15 +104,6 @@ def _gear(teeth: int, module: float, alpha: float, face: float, shift: float) ->
     except GeometryError:
         assume(False)
         raise
-
-
-def within_reach_of(pair: SpurPair, spread: Spread) -> Spread:
-    """A spread that leaves room to the end of the range in which candidate teeth are known, small modules included."""
-    reach = 0.15 * pair.pinion.base_pitch * math.sin(pair.working_pressure_angle)
-    wide = max(pair.pinion.face_width, pair.wheel.face_width) / 2
-    asked = 2 * (spread.shift + math.sqrt(2) * spread.centre + spread.tilt * wide)
-    less = min(1.0, 0.7 * reach / asked)
-    return replace(spread, tilt=less * spread.tilt, shift=less * spread.shift, centre=less * spread.centre)
 
 
 def read(builds: Builds, reading: Reading = WHOLE_FACE) -> MeshReading:
@@ -216,10 +207,7 @@ def test_the_general_kernel_continues_the_shortcut_for_parallel_axes(name: str, 
 
 # brute force ----------------------------------------------------------------------------------------------------------
 
-SPREADS = {
-    "tilted": Spread(past=0.3),
-    "warm": Spread(past=0.3, growth=4e-4, offset=0.0, tilt=0.7e-3, shift=0.04),
-}
+SPREADS = {"tilted": Spread(past=0.3), "warm": Spread(past=0.3, growth=4e-4, offset=0.0, tilt=0.7e-3, shift=0.04)}
 """An offset moves an edge along its own flank's normal in the search, along the line that joins the flanks in the
 engine: apart by 8 um (0.05 rad)^2/2 = 1e-5 mm where a tip edge touches as base pitches differ; so warm ones
 have none."""

@@ -7,7 +7,6 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from covering import covering
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from of_kind import of_kind
@@ -15,6 +14,7 @@ from oracles import bevel_brute_force, search
 from oracles.bevel_brute_force import BevelMesh
 from oracles.poses import world_from_gears
 from oracles.random_builds import Builds, Spread, random_builds, searched_bevels
+from sets import covering
 
 from tol3d.gearing.engines import OK, OUT_OF_RANGE, MeshReading
 from tol3d.gearing.engines.exact import ExactEngine
@@ -167,9 +167,7 @@ def undisturbed(pair: BevelPair, flank: Flank, turned: tuple[float, float], offs
     builds = random_builds(pair, flank, 50, 3, spread=Spread(*[0.0] * 7), thinner=0.0)
     radii = np.array([pair.pinion.mean_radius, pair.wheel.mean_radius])
     made = replace(
-        builds.made,
-        flank_turn=np.tile(np.array(turned) / (2 * radii), (50, 1)),
-        flank_offset=np.full((50, 2), offset),
+        builds.made, flank_turn=np.tile(np.array(turned) / (2 * radii), (50, 1)), flank_offset=np.full((50, 2), offset)
     )
     return replace(builds, made=made)
 

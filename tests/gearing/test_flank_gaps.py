@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from engine_gaps import FlankGap, GearRows, flank_gap
+from gearing.engine_gaps import FlankGap, GearRows, flank_gap
 from oracles.random_builds import Builds, Spread, random_builds
 
 from tol3d.gearing.engines.exact import ExactEngine

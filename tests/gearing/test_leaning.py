@@ -11,22 +11,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gear_trials import drawn_trials, gear_columns
+from gear_trials import drawn_trials, form_of, gear_columns, measure_of
 from of_kind import known
 from oracles.train import at_height, lean, seen_backward, turned
-from thinned import thinned
+from scene_texts import scene_of
 
 import tol3d
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.methods.analytic import analytic_values
-from tol3d.gearing.model import Measure, Model, Reading, model_from_scene
+from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gearing.slopes.coefficients import coefficients_of
-from tol3d.gearing.stack_up import closed_form, stack_of
+from tol3d.gearing.stack_up import stack_of
 from tol3d.gearing.stack_up.leaning import leaning_shares
 from tol3d.gearing.system import GearSystem
 from tol3d.statistics.estimates.variance_shares import RegressorSums, shares
 from tol3d.study.effects.regressors import regressor_groups, regressors
-from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.trials.simulation import Simulation
 from tol3d.study.trials.study import Study
 
@@ -80,16 +79,6 @@ def fixed(folder: Path, name: str) -> Model:
     return model_of(folder, f"{{at: {low} deg}}", f"{{at: {high} deg}}")
 
 
-def measure_of(model: Model, name: str) -> Measure:
-    return next(measure for measure in model.measures if measure.name == name)
-
-
-def form_of(model: Model, name: str) -> ClosedForm:
-    form = closed_form(model, measure_of(model, name))
-    assert form is not None
-    return form
-
-
 # by hand ------------------------------------------------------------------------------------------------------
 
 
@@ -139,7 +128,7 @@ def test_the_hand_s_lean_is_the_oracles() -> None:
     assert np.allclose(lean(low, high, HEIGHTS)[0], [-slope[1], slope[0]])
 
 
-@pytest.mark.parametrize("name", thinned(["lost motion", "first backlash"], 2))
+@pytest.mark.parametrize("name", ["lost motion", "first backlash"])
 @pytest.mark.parametrize("directions", DIRECTIONS)
 def test_mean_and_shares_of_two_bearings_follow_by_hand(directions: str, name: str, tmp_path: Path) -> None:
     """Alone: the variance of means over the other's clearance; what both do together goes to both in equal parts."""
@@ -211,7 +200,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", thinned(CASES, 2))
+@pytest.mark.parametrize("case", CASES)
 def test_a_large_sample_of_either_method_agrees(case: str, tmp_path: Path) -> None:
     """Mean within four standard errors of the sample, sigma too by its own fourth moment, beside what NET allows.
 
@@ -344,8 +333,7 @@ def test_random_shafts_have_the_closed_form_of_their_samples(tmp_path: Path) -> 
     """
     off = []
     for seed in range(SHAFTS):
-        (tmp_path / "shaft.yaml").write_text(random_shaft(seed), "utf-8")
-        model = model_from_scene(tol3d.load_scene(tmp_path / "shaft.yaml"))
+        model = model_from_scene(scene_of(random_shaft(seed), tmp_path))
         block = drawn_trials(model, seed, 0, MANY)
         for measure in model.measures:
             form, values = form_of(model, measure.name), analytic_values(model, measure, block)[:, 0]

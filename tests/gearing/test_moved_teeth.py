@@ -5,8 +5,8 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from deviating_pair import BASES, draws, model_of
 from fixtures import strips_of
+from gearing.deviating_pair import BASES, draws, model_of
 from numpy.typing import NDArray
 
 from tol3d import Overrides, run_scene

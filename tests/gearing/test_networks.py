@@ -15,6 +15,7 @@ import pytest
 from gear_trials import drawn_trials
 from numpy.typing import NDArray
 from places import SCENES
+from scene_texts import scene_of
 from scipy.optimize import linprog
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
@@ -99,8 +100,7 @@ def random_scene(rng: np.random.Generator) -> Random:
 @pytest.mark.parametrize("seed", [*range(15), *(pytest.param(k, marks=pytest.mark.slow) for k in range(15, 60))])
 def test_any_reducers_leave_what_the_programme_says(seed: int, tmp_path: Path) -> None:
     own = random_scene(np.random.default_rng(seed))
-    (tmp_path / "scene.yaml").write_text(own.text, "utf-8")
-    model = model_from_scene(load_scene(tmp_path / "scene.yaml"))
+    model = model_from_scene(scene_of(own.text, tmp_path))
     trials = drawn_trials(model, 4, 0, 3)
     found = analytic_play(model, model.measures[0], trials).free()[:, 0]
     for k, plays in enumerate(trials.deviations):
@@ -117,8 +117,7 @@ def test_random_scenes_have_networks_and_closed_ones(tmp_path: Path) -> None:
     kinds = []
     for seed in range(60):
         own = random_scene(np.random.default_rng(seed))
-        (tmp_path / "scene.yaml").write_text(own.text, "utf-8")
-        kind = model_from_scene(load_scene(tmp_path / "scene.yaml")).measures[0].kind
+        kind = model_from_scene(scene_of(own.text, tmp_path)).measures[0].kind
         assert isinstance(kind, LostMotion)
         parallel = [stage for stage in kind.stages if isinstance(stage, ParallelStage)]
         kinds.append("net" if any(stage.loops for stage in parallel) else "closed" if parallel else "series")
@@ -214,8 +213,7 @@ def test_both_methods_agree_in_the_midst_and_what_differs_is_explained(tmp_path:
 
 @pytest.mark.slow
 def test_derivatives_in_the_midst_are_those_of_two_simulations(tmp_path: Path) -> None:
-    (tmp_path / "scene.yaml").write_text(split_text(READ["in the midst"]), "utf-8")
-    model = model_from_scene(load_scene(tmp_path / "scene.yaml"))
+    model = model_from_scene(scene_of(split_text(READ["in the midst"]), tmp_path))
     measure = next(own for own in model.measures if own.name == "lost motion")
     trials, engine, step = drawn_trials(model, 4, 0, 8), exact_engine(model), 1e-5
     found = sensitivities(model, engine, trials, measure)
@@ -255,6 +253,5 @@ def test_too_many_load_paths_are_refused(tmp_path: Path) -> None:
         for other in shafts[k + 1 :]:
             lines.append(f"  {shaft} {other}: {{kind: reducer, driver: {shaft}, driven: {other}, ratio: 1}}")
     lines += ["  train: {kind: train, driven: s0, output: s12}", "measures:", "  lost: {kind: lost_motion, of: train}"]
-    (tmp_path / "scene.yaml").write_text("\n".join(lines) + "\n", "utf-8")
     with pytest.raises(SceneError, match="more than 2000 load paths lead to 's12'"):
-        model_from_scene(load_scene(tmp_path / "scene.yaml"))
+        model_from_scene(scene_of("\n".join(lines) + "\n", tmp_path))

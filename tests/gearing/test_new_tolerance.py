@@ -116,11 +116,7 @@ CHORDS_UM = 0.1  # four flanks of two chords each, 120 steps a flank: 0.012 um a
 
 @pytest.mark.parametrize(
     ("engine", "column", "bound_um"),
-    [
-        ("exact", "geometric:play", 1e-6),
-        ("fcl", "geometric:play", CHORDS_UM),
-        ("analytic", "analytic:play", 1e-9),
-    ],
+    [("exact", "geometric:play", 1e-6), ("fcl", "geometric:play", CHORDS_UM), ("analytic", "analytic:play", 1e-9)],
 )
 def test_a_run_s_engines_read_a_new_kind_as_its_closed_form_says(
     engine: Any, column: str, bound_um: float, tmp_path: Path

@@ -19,6 +19,7 @@ from of_kind import of_kind
 from oracles import split
 from oracles.split import Gear, Reducer
 from places import SCENES
+from scene_texts import scene_of
 from scipy.stats import norm
 
 from tol3d import Overrides, Run, load_scene, run_scene
@@ -132,9 +133,7 @@ def mesh(driver: str, driven: str, degrees: float, distance: float) -> split.Mes
 
 
 def model_of(folder: Path, text: str) -> Model:
-    path = folder / "load_paths.yaml"
-    path.write_text(text, encoding="utf-8")
-    return model_from_scene(load_scene(path))
+    return model_from_scene(scene_of(text, folder))
 
 
 def lost_motion(model: Model, block: Trials) -> np.ndarray:
@@ -282,7 +281,7 @@ def test_ways_bind_as_often_as_one_pinion_sits_beyond_the_play(tmp_path: Path) -
 POSITIONS = (0.0, 37.0, 222.0, 1000.0)
 OUTPUT = [
     "  output clearance: {kind: bearing_clearance, of: output bearing, direction: random, "
-    "distribution: {kind: uniform, lower: 4 um, upper: 20 um}}",
+    "distribution: {kind: uniform, lower: 4 um, upper: 20 um}}"
 ]
 RUN_OUT = ["  {0} run-out: {{kind: run_out, of: {0}, distribution: {{kind: rayleigh, scale: 4 um}}}}"]
 

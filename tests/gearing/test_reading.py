@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from of_kind import of_kind
 from oracles.thinned_pairs import ThinnedPair, random_pair
 from places import SCENES
+from scene_texts import scene_of
 
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.apps.adjustment.compensation import compensation
@@ -357,9 +358,9 @@ def test_a_train_reads_its_meshes_as_they_are_read_alone(
 def robot_model(folder: Path, *measures: str) -> Model:
     """The shoulder with other measures."""
     text = (SCENES / "robot_shoulder.yaml").read_text(encoding="utf-8")
-    path = folder / "robot.yaml"
-    path.write_text(text[: text.index("\nmeasures:")] + "\nmeasures:\n" + "\n".join(measures) + "\n", encoding="utf-8")
-    return model_from_scene(load_scene(path))
+    return model_from_scene(
+        scene_of(text[: text.index("\nmeasures:")] + "\nmeasures:\n" + "\n".join(measures) + "\n", folder)
+    )
 
 
 def test_how_a_train_is_read_is_said(tmp_path: Path) -> None:

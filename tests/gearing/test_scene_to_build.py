@@ -15,8 +15,8 @@ from gear_trials import drawn_trials
 from oracles import brute_force, poses
 from oracles.involute_gear import InvoluteGear
 from places import SCENES
+from scene_texts import scene_of
 
-from tol3d import load_scene
 from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.engines import OK
 from tol3d.gearing.meshing.mesh import Meshing
@@ -40,9 +40,7 @@ def model_of(folder: Path, tolerances: str, *, parts: str = DRIVER + DRIVEN + HO
         f"scene: small\nparts:\n{parts}tolerances:\n{tolerances}moves:\n  gear pair: {{{mesh}}}\n"
         "measures:\n  play: {kind: normal_backlash, of: gear pair}\n"
     )
-    path = folder / "scene.yaml"
-    path.write_text(text, "utf-8")
-    return model_from_scene(load_scene(path))
+    return model_from_scene(scene_of(text, folder))
 
 
 def built(model: Model, count: int = 1) -> Build:
@@ -292,9 +290,7 @@ def test_a_driver_that_turns_counter_clockwise_pushes_with_its_left_flank(
     word: str, pushes: bool, tmp_path: Path, engine_of: EngineOf
 ) -> None:
     """Seated, then turned a little further counter-clockwise: only the left flank digs into its mate."""
-    path = tmp_path / "scene.yaml"
-    path.write_text(SPUR_PAIR.replace("working_flank: right", f"working_flank: {word}"), "utf-8")
-    model = model_from_scene(load_scene(path))
+    model = model_from_scene(scene_of(SPUR_PAIR.replace("working_flank: right", f"working_flank: {word}"), tmp_path))
     angle = np.array([0.3, 11.0, 140.0, 301.0])  # rad, within the long period of 55 turns
     row = np.zeros((len(angle), model.component_count))
     for name, um in (("pinion tooth thickness", -24.5), ("wheel tooth thickness", -26.5), ("bearing clearance", 16.0)):

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from deviating_pair import BASES, PITCH, SHAPES, TEETH, Builds, dense, drawn
+from gearing.deviating_pair import BASES, PITCH, SHAPES, TEETH, Builds, dense, drawn, model_of
 from numpy.typing import NDArray
 
+from tol3d.gearing.builds.flank_offsets import deviates
 from tol3d.gearing.engines import OUT_OF_RANGE
 from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.meshing.mesh import Meshing
@@ -47,6 +48,14 @@ def test_coarse_teeth_touch_further_beyond_the_path_of_contact(tmp_path: Path) -
     """Class 9 of module 2: squares of slopes are four times those of class 7."""
     builds = drawn(f"{PITCH}\n{SHAPES}".replace("iso_class: 7", "iso_class: 9"), tmp_path, 12, 5)
     check_against_points(builds, (-5.0, 5.0), 0.04)
+
+
+def test_a_mesh_deviates_flank_by_flank_if_one_of_many_tolerances_does_so(tmp_path: Path) -> None:
+    thin = "kind: tooth_thickness, distribution: {kind: constant, value: -40 um}"
+    others = "\n".join(f"  {gear} thickness: {{{thin}, of: {gear}}}" for gear in ("pinion", "wheel"))
+    for tolerances, expected in ((others, False), (f"{others}\n{SHAPES}", True), (SHAPES, True)):
+        model = model_of(tmp_path, tolerances)
+        assert deviates(model, model.meshes[0]) == expected
 
 
 def test_gears_of_coarse_classes_are_in_range(tmp_path: Path) -> None:

@@ -1,17 +1,21 @@
 """Rests of deviated teeth at many positions, taken from the line of action, against dense points and Newton's feet."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from deviating_pair import BASES, PITCH, SHAPES, TURN, Builds, dense, drawn
+from gearing.deviating_pair import BASES, PITCH, SCENE, SHAPES, TURN, Builds, dense, drawn
 from numpy.typing import NDArray
 
+from tol3d import load_scene
+from tol3d.gearing.engines import OUT_OF_RANGE
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.tooth_contact import beside, edge_gap
-from tol3d.gearing.model import Reading
+from tol3d.gearing.engines.gaps import MeshReading
+from tol3d.gearing.model import Reading, model_from_scene
 from tol3d.gears.flank import LEFT, RIGHT
 
 Array = NDArray[np.float64]
@@ -65,6 +69,45 @@ def test_at_each_rest_newton_finds_no_gap_and_no_overlap(more: str, tmp_path: Pa
             within = np.where(gaps.at_end, np.inf, gaps.value)  # beyond both ends a gap is no more than a bound
             assert 1e3 * np.abs(gaps.value).min(axis=1).max() < NEWTON_UM
             assert 1e3 * within.min() > -NEWTON_UM
+
+
+IDLER = """  before: {kind: mesh, driver: first, driven: pinion, centre_distance: 45.3 mm, azimuth: 150 deg}
+"""
+
+
+def thinned(tolerances: str, folder: Path, *, in_train: bool) -> Builds:
+    """The pair with gears thinner by 60 and 20 um and nothing else, alone or driven by a gear of 25 teeth."""
+    thin = "  thin {gear}: {{kind: tooth_thickness, of: {gear}, distribution: {{kind: constant, value: {value} um}}}}\n"
+    lines = thin.format(gear="pinion", value=-60) + thin.format(gear="wheel", value=-20) + tolerances
+    text = SCENE.format(tolerances=lines, flank="right")
+    if in_train:
+        first = "parts:\n  first: {kind: spur_gear, teeth: 25, module: 2 mm, face_width: 12 mm}\n"
+        text = text.replace("parts:\n", first).replace("moves:\n", f"moves:\n{IDLER}")
+    (folder / "thinned.yaml").write_text(text, "utf-8")
+    model = model_from_scene(load_scene(folder / "thinned.yaml"))
+    found = Builds(model, np.zeros((5, model.component_count)), np.zeros(5))
+    found.of("thin pinion")[:], found.of("thin wheel")[:] = -0.06, -0.02
+    return found
+
+
+@pytest.mark.parametrize("in_train", [False, True])
+def test_teeth_that_do_not_deviate_rest_as_involutes_do(in_train: bool, tmp_path: Path) -> None:
+    """Two kernels, one answer: thinner gears, then one of them grown, in range and out of it."""
+    angles, read = np.array([0.3, 0.4, 1.0, 3.0]), list[tuple[MeshReading, MeshReading]]()
+    for tolerances in ("", ALL):
+        builds = thinned(tolerances, tmp_path, in_train=in_train)
+        made, mesh = builds.engine.build(builds.deviations), builds.model.mesh("pair")
+        scale = np.ones_like(made.scale)
+        for gear, grown in (("pinion", [0.0, 0.003, 0.0, 0.006, 0.0]), ("wheel", [0.0, 0.0, 0.003, 0.0, 0.006])):
+            scale[:, builds.model.seat_index["pair", gear]] += grown
+        read.append(builds.engine.rests(replace(made, scale=scale), mesh, Reading(contact="section"), angles))
+    out = read[0][0].status == OUT_OF_RANGE
+    assert out.all(axis=1).tolist() == out.any(axis=1).tolist() == [False, False, False, True, True]
+    for plain, level in zip(*read, strict=True):
+        np.testing.assert_array_equal(level.status, plain.status)
+        np.testing.assert_array_equal(level.tooth, plain.tooth)
+        assert level.driven_angle == pytest.approx(plain.driven_angle, abs=1e-9, nan_ok=True)
+        assert level.contact == pytest.approx(plain.contact, abs=1e-6, nan_ok=True)
 
 
 # beside the line of action --------------------------------------------------------------------------------------

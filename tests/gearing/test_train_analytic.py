@@ -11,19 +11,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gear_trials import drawn_trials, gear_columns
+from gear_trials import drawn_trials, form_of, gear_columns, measure_of
 from oracles.train import robot_lost_motion, table_lost_motion
 from places import SCENES
+from scene_texts import scene_of
 
 from tol3d import load_scene
 from tol3d.gearing.builds.build import build
 from tol3d.gearing.engines.gaps import STATUSES, exact_engine
-from tol3d.gearing.model import Measure, Model, Reading, model_from_scene
+from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gearing.play.play import breakdowns_of
 from tol3d.gearing.slopes.sensitivity import sensitivities
-from tol3d.gearing.stack_up import closed_form, stack_of
+from tol3d.gearing.stack_up import stack_of
 from tol3d.gearing.summary.train_sections import train_sections
-from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.trials import Trials
 from tol3d.study.tallies.tally import merged_terms, pooled_terms
 
@@ -44,9 +44,7 @@ def without(text: str, *names: str) -> str:
 
 
 def model_of(folder: Path, text: str) -> Model:
-    path = folder / "scene.yaml"
-    path.write_text(text, encoding="utf-8")
-    return model_from_scene(load_scene(path))
+    return model_from_scene(scene_of(text, folder))
 
 
 @pytest.fixture(scope="module")
@@ -58,16 +56,6 @@ def upright(tmp_path_factory: pytest.TempPathFactory) -> Model:
         "shaft: idler}\n  at the table: {kind: lost_motion, of: indexing, shaft: table shaft}",
     )
     return model_of(tmp_path_factory.mktemp("upright"), text)
-
-
-def measure_of(model: Model, name: str) -> Measure:
-    return next(measure for measure in model.measures if measure.name == name)
-
-
-def form_of(model: Model, name: str) -> ClosedForm:
-    form = closed_form(model, measure_of(model, name))
-    assert form is not None
-    return form
 
 
 # by hand --------------------------------------------------------------------------------------------------------

@@ -18,6 +18,7 @@ from fixtures import EngineOf
 from gear_trials import drawn_trials, gear_columns
 from oracles.random_builds import Spread, random_builds
 from oracles.random_scenes import random_scenes
+from oracles.train import involute
 from oracles.two_sided import EccentricPair
 from places import SCENES
 
@@ -176,10 +177,6 @@ def test_every_position_is_the_exact_eccentric_pair(pair: EccentricPair, flank: 
     for side, own in (("drive", found.drive), ("back", found.back)):
         assert np.abs(own - seen.transmission_error(phi, side)).max() < SAME_TURN
     assert np.abs(found.play - seen.backlash(phi)).max() < SAME_TURN
-
-
-def involute(angle: float) -> float:
-    return math.tan(angle) - angle
 
 
 def at_turns(measure: Measure, turns: int, count: int) -> Measure:

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from places import SCENES
 from ruamel.yaml import YAML
+from scene_texts import scene_of
 
-from tol3d import load_scene
 from tol3d.errors import SceneError
 from tol3d.gearing.effects import TurningOffset
 from tol3d.gearing.model import Model, model_from_scene
@@ -21,9 +21,7 @@ def model_of(folder: Path, scene: str, of: str, moves: dict[str, Any] | None = N
     for name, changed in (moves or {}).items():
         known["moves"][name] |= changed
     known["measures"] = {"error": {"kind": "transmission_error", "of": of} | fields}
-    path = folder / "scene.yaml"
-    path.write_text(json.dumps(known, ensure_ascii=False), "utf-8")
-    return model_from_scene(load_scene(path))
+    return model_from_scene(scene_of(json.dumps(known, ensure_ascii=False), folder))
 
 
 def refused(folder: Path, scene: str, of: str, moves: dict[str, Any] | None = None, **fields: Any) -> str:

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from covering import covering
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from oracles import brute_force, outline
@@ -15,6 +14,7 @@ from oracles.involute_gear import InvoluteGear
 from oracles.rack_envelope import Rack
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from sets import covering
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, Displaced, SpurGear, SpurPair, inverse_involute, involute

@@ -11,7 +11,6 @@ from oracles.internal_brute_force import InternalBuilds, Ring
 from oracles.involute_gear import InvoluteGear
 from oracles.poses import pose
 from oracles.ring_and_pinion import Toothed, free_turn
-from thinned import thinned
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, Displaced, Flank, InternalGear, InternalPair, SpurGear
@@ -207,7 +206,7 @@ def plain(gear: SpurGear | InternalGear) -> InvoluteGear | Ring:
     )
 
 
-@pytest.mark.parametrize("ring_drives", thinned([False, True], 2))
+@pytest.mark.parametrize("ring_drives", [False, True])
 def test_the_search_of_surfaces_finds_the_closed_backlash_with_eccentric_centres(ring_drives: bool) -> None:
     """2 (r_b2 - r_b1)(inv alpha_w0 - inv alpha_w') at the distance of the centres, wherever they have turned to."""
     rng = np.random.default_rng(3)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from internal_pairs import outline, random_pair
+from gears.internal_pairs import outline, random_pair
 from oracles.ring_overlap import overlap
 
 from tol3d.gears import InternalGear, InternalPair, SpurGear

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from machine.housed import ALONG, APART, GEARS, SHAFTS, plain_scene
+from scene_texts import edited, refusal, scene_of
 
-from tol3d import Overrides, SceneError, load_scene, run_scene
+from tol3d import Overrides, load_scene, run_scene
 
 X, Y = (APART * own for own in ALONG)
 ROD = 50.0
@@ -60,9 +61,7 @@ study: {{trials: 500}}
 
 def test_a_longer_rod_pushes_the_wheel_towards_the_pinion(tmp_path: Path) -> None:
     """The rod hangs on a point beyond the wheel: what it is longer, the centre distance is less."""
-    place = tmp_path / "scene.yaml"
-    place.write_text(SCENE, "utf-8")
-    run = run_scene(load_scene(place), overrides=Overrides(trials=500), out=tmp_path / "run")
+    run = run_scene(scene_of(SCENE, tmp_path), overrides=Overrides(trials=500), out=tmp_path / "run")
     own = run.summary["measures"]["backlash"]
     assert own["agreement"]["explanation"]["faults"] == []
     assert own["status"]["does not close"] == 0
@@ -80,9 +79,6 @@ def test_a_longer_rod_pushes_the_wheel_towards_the_pinion(tmp_path: Path) -> Non
 
 
 def test_no_path_is_read_beside_gears(tmp_path: Path) -> None:
-    place = tmp_path / "scene.yaml"
     read = "\n  along: {kind: gap, from: housing.eye, to: slide.eye, along: [1, 0, 0], over: there, take: max}\nstudy"
-    place.write_text(SCENE.replace("\nstudy", read), "utf-8")
-    with pytest.raises(SceneError) as refused:
-        load_scene(place)
-    assert "measures.along.over: expected none, for no move has paths, got 'there'" in str(refused.value)
+    said = refusal(edited(SCENE, ("\nstudy", read)), tmp_path)
+    assert "measures.along.over: expected none, for no move has paths, got 'there'" in said

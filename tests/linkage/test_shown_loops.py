@@ -8,8 +8,9 @@ import pytest
 from fixtures import Command
 from linkage.drive_scene import drive_text, error
 from oracles.spherical_drive import travels
+from scene_texts import edited, refusal
 
-from tol3d import Overrides, SceneError, run_scene
+from tol3d import Overrides, run_scene
 from tol3d.assembly.linkage.loop import ClosedLoop
 from tol3d.assembly.linkage.workspace import workspace_of
 from tol3d.assembly.system import AssemblySystem
@@ -101,9 +102,6 @@ def test_what_has_no_workspace_is_refused(tol3d: Command, tmp_path: Path) -> Non
 
 
 def test_a_pose_beyond_the_range_of_an_input_is_refused(scene: Path, tmp_path: Path) -> None:
-    place = tmp_path / "drive.yaml"
-    limited = "        of: guide 2\n        range: [-60 mm, 60 mm]\n"
-    place.write_text(scene.read_text("utf-8").replace("        of: guide 2\n", limited), "utf-8")
-    with pytest.raises(SceneError) as refused:
-        simulation_of(load(place))
-    assert "moves.drive.poses.wide: expected 'travel 2' from -60 mm to 60 mm, got -64.0345 mm" in str(refused.value)
+    free = "        of: guide 2\n"
+    said = refusal(edited(scene.read_text("utf-8"), (free, f"{free}        range: [-60 mm, 60 mm]\n")), tmp_path)
+    assert "moves.drive.poses.wide: expected 'travel 2' from -60 mm to 60 mm, got -64.0345 mm" in said

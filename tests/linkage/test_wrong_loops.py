@@ -121,11 +121,7 @@ WRONG = {
         "moves.loop",
         "got a freedom: 'rocker' turns about [0, 0, 1] through [100, 0, 0] mm",
     ),
-    "a joint that is missing": (
-        scene({"d": ""}),
-        "moves.loop",
-        "got a freedom: ",
-    ),
+    "a joint that is missing": (scene({"d": ""}), "moves.loop", "got a freedom: "),
     "a body that no joint reaches": (
         scene({"c": "", "b": "{kind: ball, between: [frame.E, crank.P]}"}),
         "moves.loop.joints",
@@ -260,11 +256,7 @@ WRONG = {
         "expected an angle with its unit, such as \"20 deg\", got '3 mm', which is a length",
     ),
     "a pose without an input": (scene(poses="{here: {}}"), "moves.loop.poses.here", "'angle'"),
-    "a pose of what is no input": (
-        scene(poses="{here: {angel: 0 deg}}"),
-        "moves.loop.poses.here.angel",
-        "angle",
-    ),
+    "a pose of what is no input": (scene(poses="{here: {angel: 0 deg}}"), "moves.loop.poses.here.angel", "angle"),
     "lengths for angles": (
         scene(inputs="{angle: {of: a, deviations: {off: {distribution: {kind: normal, mean: 0 mm, sigma: 1 um}}}}}"),
         "moves.loop.inputs.angle.deviations.off.distribution",

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 from machine.housed import Array
+from scene_texts import scene_of
 
-from tol3d import Overrides, load_scene
+from tol3d import Overrides
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.study.system.stated import component_slices
 from tol3d.study.system.trials import Trials
@@ -100,9 +101,7 @@ def errors(last: int = 3) -> str:
 
 def system_of(text: str, folder: Path) -> MachineSystem:
     """The machine that a scene means."""
-    place = folder / "arm.yaml"
-    place.write_text(text, "utf-8")
-    system = simulation_of(load_scene(place), Overrides()).system
+    system = simulation_of(scene_of(text, folder), Overrides()).system
     assert isinstance(system, MachineSystem)
     return system
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scene_texts import scene_of
 
-from tol3d import Overrides, load_scene
+from tol3d import Overrides
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.study.system.system import System
 from tol3d.study.system.trials import Trials
@@ -77,11 +78,9 @@ measures:{measures}
 """
 
 
-def system_of(text: str, folder: Path, name: str = "scene") -> Any:
+def system_of(text: str, folder: Path) -> Any:
     """System of a scene."""
-    path = folder / f"{name}.yaml"
-    path.write_text(text, "utf-8")
-    return simulation_of(load_scene(path), Overrides()).system
+    return simulation_of(scene_of(text, folder), Overrides()).system
 
 
 def gearbox_of(text: str, folder: Path) -> MachineSystem:

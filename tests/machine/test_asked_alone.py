@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from machine.arm_by_hand import DRIVE, STAGE
 from machine.housed import Array
+from scene_texts import scene_of
 from scipy.spatial.transform import Rotation
 
-from tol3d import Overrides, load_scene
+from tol3d import Overrides
 from tol3d.study.system.stated import component_slices
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.overrides import simulation_of
@@ -91,9 +92,7 @@ ALL_TEETH = "  all: {kind: lost_motion, of: d, over: {at: 0 deg}}\n"
 
 def read(text: str, folder: Path, method: str) -> tuple[Mapping[str, Array], Mapping[str, Array]]:
     """Measures of the first trials (trials,) [mm or rad], and deviations by contributor (trials, components)."""
-    place = folder / "scene.yaml"
-    place.write_text(text, "utf-8")
-    simulation = simulation_of(load_scene(place), Overrides())
+    simulation = simulation_of(scene_of(text, folder), Overrides())
     system, trials = simulation.system, drawn(simulation, 0, COUNT)
     found = system.method(method, system.materials(method)).answers(trials, system.measures)
     slices = component_slices(system)

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import pytest
+from scene_texts import scene_of
 
-from tol3d import Overrides, load_scene, run_scene
+from tol3d import Overrides, run_scene
 from tol3d.report.presenter import presenter_of
 
 SCENE = """scene: chain alone
@@ -31,9 +32,7 @@ measures:
 
 def test_a_link_is_read_in_every_pose(tmp_path: Path) -> None:
     """The y direction of the link is -x of the base once it has turned by a quarter."""
-    place = tmp_path / "chain.yaml"
-    place.write_text(SCENE, "utf-8")
-    run = run_scene(load_scene(place), overrides=Overrides(trials=400), out=tmp_path / "run")
+    run = run_scene(scene_of(SCENE, tmp_path), overrides=Overrides(trials=400), out=tmp_path / "run")
     home, up = (run.summary["measures"][name] for name in ("x at home", "x up"))
     assert home["geometric"]["sigma"] == pytest.approx(0.0, abs=1e-9)
     assert up["geometric"]["sigma"] == pytest.approx(20.0 / 3, rel=4 / (2 * 400) ** 0.5)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from machine.housed import FOUR_BORES, gearbox_of, housed_scene
 from machine.test_shared_bores import LOCATED, POINTS, TABLE
+from scene_texts import written
 
 from tol3d import Overrides, open_run, replay, run_scene
 from tol3d.study.system.trials import Trials
@@ -38,8 +39,7 @@ def test_a_housing_out_of_reach_is_a_status_of_its_gears(tmp_path: Path) -> None
 
 
 def test_a_run_counts_them_and_leaves_them_out_of_means(tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(text(), "utf-8")
+    path = written(text(), tmp_path)
     count = 4000
     run = run_scene(path, overrides=Overrides(trials=count, seed=3), out=tmp_path / "run")
     counts = run.summary["status"]

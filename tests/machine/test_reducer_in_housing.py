@@ -49,11 +49,7 @@ MODIFIED = "shift: -60 um, offset: -40 um"
 
 
 def scene(
-    *,
-    tolerances: str = OF_REDUCER + MOVED,
-    laid: tuple[str, ...] = CENTRAL,
-    modified: str = MODIFIED,
-    over: str = "",
+    *, tolerances: str = OF_REDUCER + MOVED, laid: tuple[str, ...] = CENTRAL, modified: str = MODIFIED, over: str = ""
 ) -> str:
     """A reducer of ratio 25 whose sun drives."""
     moves = "".join(
@@ -138,7 +134,7 @@ def test_a_reducer_in_a_true_housing_is_the_reducer_by_itself(method: str, tmp_p
     )
     alone = alone.replace("lost_motion, of: train, over: {at: 500", "cycloid_lost_motion, of: rv, over: {at: 20")
     found = values(gearbox_of(text, tmp_path), method, of, turns)["lost motion"]
-    wanted = values(system_of(alone, tmp_path, "alone"), method, of, turns)["lost motion"]
+    wanted = values(system_of(alone, tmp_path), method, of, turns)["lost motion"]
     assert np.ptp(wanted) > 1e-4
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12)
 

@@ -68,7 +68,7 @@ def test_a_bore_s_position_in_a_flat_zone_is_a_centre_distance(method: str, tmp_
     position = f"\n  f: {{kind: position, of: housing.bore 2, datums: [floor, side, front], {zone}}}"
     housed = gearbox_of(housed_scene(tolerances=position, parts=GEARS, moves=ALONE), tmp_path)
     plain = system_of(
-        plain_scene(tolerances=f"\n  f: {{kind: centre_distance, of: stage, {LAW}}}", parts=GEARS), tmp_path, "plain"
+        plain_scene(tolerances=f"\n  f: {{kind: centre_distance, of: stage, {LAW}}}", parts=GEARS), tmp_path
     )
     aside = spread(1)
     both(housed, plain, method, {"f.start": aside, "f.end": aside}, {"f": aside})
@@ -101,7 +101,7 @@ def test_bores_that_lie_aside_tilt_a_shaft_as_bearings_with_clearance_do(method:
         for bore, angle in seen.items()
     )
     text = plain_scene(tolerances=its, parts=SHAFTS + GEARS + bearings, mesh=f", azimuth: {along} deg")
-    plain = system_of(text, tmp_path, "plain")
+    plain = system_of(text, tmp_path)
     deviations = {f"of {bore}": spread(k) for k, bore in enumerate(bores)}
     both(housed, plain, method, deviations, {name: 2 * own for name, own in deviations.items()})
 
@@ -118,9 +118,7 @@ def test_a_warm_housing_moves_its_bores_as_it_opens_a_centre_distance(method: st
     )
     housed = gearbox_of(housed_scene(tolerances=warm + positions), tmp_path)
     old = "\n  housing: {kind: housing, expansion: 23e-6 1/K}"
-    plain = system_of(
-        plain_scene(tolerances=warm, parts=SHAFTS + GEARS + old, mesh=", housing: housing"), tmp_path, "plain"
-    )
+    plain = system_of(plain_scene(tolerances=warm, parts=SHAFTS + GEARS + old, mesh=", housing: housing"), tmp_path)
     kelvin = 1000 * spread(3)
     both(housed, plain, method, {"warm": kelvin}, {"warm": kelvin})
     assert housed.closed_form(housed.measures[0]) is not None
@@ -135,7 +133,7 @@ def test_one_temperature_of_gears_and_housing_is_one_variable_in_the_closed_form
     housed = gearbox_of(housed_scene(tolerances=warm + (lean if leans else "")), tmp_path)
     old = "\n  housing: {kind: housing, expansion: 23e-6 1/K}"
     parts = SHAFTS + GEARS + old
-    plain = system_of(plain_scene(tolerances=warm, parts=parts, mesh=", housing: housing"), tmp_path, "plain")
+    plain = system_of(plain_scene(tolerances=warm, parts=parts, mesh=", housing: housing"), tmp_path)
     found, expected = (own.closed_form(own.measures[0]) for own in (housed, plain))
     assert found is not None
     assert expected is not None
@@ -180,7 +178,7 @@ def test_the_closed_form_has_the_means_of_all_bores(tmp_path: Path) -> None:
 def test_a_housing_without_a_tolerance_of_its_own_leaves_the_gears_theirs(method: str, tmp_path: Path) -> None:
     """No column moves its bores: nothing of the assembly is drawn."""
     housed = gearbox_of(housed_scene(tolerances=THICK), tmp_path)
-    plain = system_of(plain_scene(tolerances=THICK), tmp_path, "plain")
+    plain = system_of(plain_scene(tolerances=THICK), tmp_path)
     mine = {"thickness": spread(9) - 0.045}
     both(housed, plain, method, mine, mine)
     for own, its in zip(housed.measures, plain.measures, strict=True):

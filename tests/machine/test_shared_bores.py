@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from machine.housed import FOUR_BORES, gearbox_of, housed_scene, values
 from numpy.typing import NDArray
+from scene_texts import written
 
 from tol3d import Overrides, run_scene
 
@@ -139,8 +140,7 @@ def test_the_closed_form_of_leaning_shafts_is_that_of_the_sample(tmp_path: Path)
     positions = "".join(
         f"\n  of {bore}: {{kind: position, of: housing.{bore}, {zone}}}" for bore in ("bore 1b", "bore 2", "bore 2b")
     )
-    path = tmp_path / "scene.yaml"
-    path.write_text(housed_scene(tolerances=positions), "utf-8")
+    path = written(housed_scene(tolerances=positions), tmp_path)
     count = 40_000
     run = run_scene(path, overrides=Overrides(trials=count, engine="analytic", seed=2), out=tmp_path / "run")
     own = run.summary["measures"]["backlash"]

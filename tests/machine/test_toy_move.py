@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 import pytest
 from machine.housed import BACKLASH, FOUR_BORES, GEARS, LAID, SHAFTS, housed_scene
+from scene_texts import written
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.assembly.from_scene.setting import Setting
@@ -138,8 +139,7 @@ def test_a_toy_move_stands_beside_gears_in_a_housing(tmp_path: Path) -> None:
         moves=LIFTED + LAID,
         measures=BACKLASH + READ,
     )
-    place = tmp_path / "scene.yaml"
-    place.write_text(text, "utf-8")
+    place = written(text, tmp_path)
     scene = load_scene(place, KINDS)
     run = run_scene(scene, overrides=Overrides(trials=1000), out=tmp_path / "run", kinds=KINDS)
     own = run.summary["measures"]["table up"]

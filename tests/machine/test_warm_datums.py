@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from machine.housed import gearbox_of, values
 from numpy.typing import NDArray
+from oracles.train import involute
 from scipy.spatial.transform import Rotation
 
 Array = NDArray[np.float64]
@@ -19,10 +20,6 @@ FRAMES = (
     *("P1, Hx", "P1, Q1, Q2", "P1, P2, Q1", "P2, Hx, Q2", "Pi, P1, P2", "Q1, Q2, Q3", "H1-H2", "P1, H1-H2", "H1-Q1"),
     *("P1, Q1-Q2", "a, P1", "P1, {feature: P2, simulator: fitted}, P3"),
 )
-
-
-def involute(angle: float) -> float:
-    return math.tan(angle) - angle
 
 
 def backlash(apart: float) -> float:

@@ -1,6 +1,7 @@
 """Random builds of a pair anywhere near its place, the same for an engine and for a search of the surfaces."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -156,3 +157,12 @@ def bevel_numbers(gear: BevelGear, turned: float, offset: float, growth: float) 
         turned,
         offset,
     )
+
+
+def within_reach_of(pair: SpurPair | InternalPair, spread: Spread) -> Spread:
+    """A spread that leaves room to the end of the range in which candidate teeth are known, small modules included."""
+    reach = 0.15 * pair.pinion.base_pitch * math.sin(pair.working_pressure_angle)
+    wide = max(pair.pinion.face_width, pair.wheel.face_width) / 2
+    asked = 2 * (spread.shift + math.sqrt(2) * spread.centre + spread.tilt * wide)
+    less = min(1.0, 0.7 * reach / asked)
+    return replace(spread, tilt=less * spread.tilt, shift=less * spread.shift, centre=less * spread.centre)

@@ -95,10 +95,7 @@ def overlap(ring: Outline, inner: Outline, distance: float, turns: np.ndarray, c
         corners_only: tip corners, or every point of the outlines.
     """
     worst = -math.inf
-    for own, mate, own_at, mate_at, column in (
-        (inner, ring, distance, 0.0, 1),
-        (ring, inner, 0.0, distance, 0),
-    ):
+    for own, mate, own_at, mate_at, column in ((inner, ring, distance, 0.0, 1), (ring, inner, 0.0, distance, 0)):
         radius, azimuth = (points[: 2 if corners_only else None] for points in own.tooth())
         for tooth in range(own.teeth):
             at = turns[:, column, None] + azimuth + 2 * math.pi * tooth / own.teeth

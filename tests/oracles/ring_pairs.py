@@ -57,10 +57,7 @@ class RingPair:
         # where strings of flanks end that begin at the middle of a tooth of the gear, and of a space of the ring
         tooth = self.thickness[0] / (2 * reference[0]) + flat
         space = (np.pi * self.module - self.thickness[1]) / (2 * reference[1]) + flat
-        ends = (
-            r1 * (side * (touching - gear) + tooth),
-            r2 * (side * (touching - ring - np.pi / z2) + space),
-        )
+        ends = (r1 * (side * (touching - gear) + tooth), r2 * (side * (touching - ring - np.pi / z2) + space))
         gap = ends[1] - ends[0] - (away * along).sum(axis=1)
         pitch = np.pi * self.module * np.cos(self.pressure_angle)
         return np.asarray(gap - pitch * np.round(gap / pitch))

@@ -83,12 +83,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "no such face": ({"holes": [Hole("a", (30.0, 0.0), 6.0)]}, "'top'; expected one of base outside, base inside"),
     "overlap": (
-        {
-            "holes": [
-                Hole("a", (30.0, 0.0), 6.0, None, "base inside"),
-                Hole("b", (34.0, 0.0), 6.0, 2.0, "base outside"),
-            ]
-        },
+        {"holes": [Hole("a", (30.0, 0.0), 6.0, None, "base inside"), Hole("b", (34.0, 0.0), 6.0, 2.0, "base outside")]},
         "hole 'a' .* and hole 'b' .* overlap",
     ),
     "fillet too large": ({"fillet": 42.0}, "do not reach beyond its thickness of 8 mm and its fillet of 42 mm"),

@@ -7,6 +7,7 @@ from typing import Any
 import cadquery as cq
 import numpy as np
 import pytest
+from oracles.train import involute
 from scipy.integrate import quad
 
 from tol3d.errors import GeometryError
@@ -27,10 +28,6 @@ def section(thin: float = THIN) -> SpurGear:
 
 def gear(*, tooth: bool = True, reach: float = 95.0, thin: float = THIN, bore: Any = None) -> NamedSolid:
     return spherical_gear(section(thin), math.radians(reach), tooth_at_pole=tooth, bore=bore)
-
-
-def involute(angle: float) -> float:
-    return math.tan(angle) - angle
 
 
 def half_angle(radius: float, thin: float = THIN) -> float:

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 from places import SCENES
+from scene_texts import scene_of
 
-from tol3d import Overrides, SceneError, load_scene
+from tol3d import Overrides, SceneError
 from tol3d.gearing.planetary.from_scene import planetary_system
 from tol3d.gearing.planetary.system import PlanetarySystem
 from tol3d.study.system.method import ANALYTIC_METHOD
@@ -24,7 +25,7 @@ TRIALS = 20_000
 DIAMETER = 0.012  # mm
 
 
-def scene_of(
+def reducer_of(
     folder: Path, law: str, planets: int = 4, zone: str = "{diameter: 12 um}"
 ) -> tuple[PlanetarySystem, Trials]:
     """The reducer with thinned teeth, and its bores alone toleranced."""
@@ -34,9 +35,7 @@ def scene_of(
     )
     bores = f"  bores: {{kind: bore_position, of: carrier, zone: {zone}, law: {law}}}"
     text = f"{TEXT[:START]}tolerances:\n{thinned}\n{bores}\n\n{TEXT[END:]}".replace("planets: 4", f"planets: {planets}")
-    path = folder / "scene.yaml"
-    path.write_text(text, "utf-8")
-    scene = load_scene(path)
+    scene = scene_of(text, folder)
     return planetary_system(scene), drawn(simulation_of(scene, Overrides(trials=TRIALS)), 0, TRIALS)
 
 
@@ -53,7 +52,7 @@ def pins(system: PlanetarySystem, trials: Trials) -> np.ndarray:
 
 def test_a_uniform_law_fills_the_zone_of_each_bore_by_itself(tmp_path: Path) -> None:
     """A disc of diameter t: each coordinate has the variance t²/16, four planets are independent; 5 sigma of 20 000."""
-    found = pins(*scene_of(tmp_path, "{kind: uniform}")).reshape(TRIALS, -1)
+    found = pins(*reducer_of(tmp_path, "{kind: uniform}")).reshape(TRIALS, -1)
     assert np.hypot(found[:, ::2], found[:, 1::2]).max() <= DIAMETER / 2
     np.testing.assert_allclose(found.var(axis=0), DIAMETER**2 / 16, rtol=5 * math.sqrt(1 / TRIALS))
     off = np.corrcoef(found.T) - np.eye(8)
@@ -63,7 +62,7 @@ def test_a_uniform_law_fills_the_zone_of_each_bore_by_itself(tmp_path: Path) -> 
 
 def test_a_normal_law_has_three_sigma_at_the_edge_and_stays_inside(tmp_path: Path) -> None:
     """Two normals of t/6 on condition that both lie in the disc: E r² = 2 s² (1 - 4.5 e/(1 - e)), e = exp(-9/2)."""
-    found = pins(*scene_of(tmp_path, "{kind: normal}"))
+    found = pins(*reducer_of(tmp_path, "{kind: normal}"))
     squares = (found * found).sum(axis=2)
     assert np.sqrt(squares).max() <= DIAMETER / 2
     tail = math.exp(-4.5)
@@ -72,7 +71,7 @@ def test_a_normal_law_has_three_sigma_at_the_edge_and_stays_inside(tmp_path: Pat
 
 
 def test_bores_on_a_ring_lie_at_its_edge_at_phases_of_their_own(tmp_path: Path) -> None:
-    found = pins(*scene_of(tmp_path, "{kind: ring}"))
+    found = pins(*reducer_of(tmp_path, "{kind: ring}"))
     assert np.hypot(found[..., 0], found[..., 1]) == pytest.approx(np.full(found.shape[:2], DIAMETER / 2), rel=1e-12)
     across = np.corrcoef(found.reshape(TRIALS, -1).T) - np.eye(8)
     assert np.abs(across).max() < 5 / math.sqrt(TRIALS)
@@ -80,7 +79,7 @@ def test_bores_on_a_ring_lie_at_its_edge_at_phases_of_their_own(tmp_path: Path) 
 
 def test_a_process_is_judged_by_the_zone_and_not_cut(tmp_path: Path) -> None:
     """Normals of 4 um in a disc of 6 um radius: exp(-36/32) of the bores lie outside, and keep their trials."""
-    system, trials = scene_of(tmp_path, "{kind: process, distribution: {kind: normal, mean: 0 um, sigma: 4 um}}")
+    system, trials = reducer_of(tmp_path, "{kind: process, distribution: {kind: normal, mean: 0 um, sigma: 4 um}}")
     draw: Any = system.contributors[-1].draw
     found = pins(system, trials)
     outside = np.hypot(found[..., 0], found[..., 1]) > DIAMETER / 2
@@ -95,7 +94,7 @@ def test_what_one_bore_does_to_the_lost_motion_is_its_closed_form(tmp_path: Path
     So the lost motion falls by 2 (1 + k) tan(a)/rR2 a millimetre, its variance is that squared times t²/16; across, a
     bore does nothing.
     """
-    system, trials = scene_of(tmp_path, "{kind: uniform}", planets=1)
+    system, trials = reducer_of(tmp_path, "{kind: uniform}", planets=1)
     slope = 2 * (1 + 24 / 27) * math.tan(math.radians(20)) / 38.0
     found = lost(system, trials)
     off = pins(system, trials)[:, 0]
@@ -105,7 +104,7 @@ def test_what_one_bore_does_to_the_lost_motion_is_its_closed_form(tmp_path: Path
 
 def test_both_ends_reach_as_far_as_the_zones_along_the_slopes(tmp_path: Path) -> None:
     """A measure of slopes 3 and 4 of two bores' radial coordinates: 3/5 and 4/5 of 6 um each, both ways."""
-    system, _ = scene_of(tmp_path, "{kind: uniform}")
+    system, _ = reducer_of(tmp_path, "{kind: uniform}")
     draw = system.contributors[-1].draw
     slopes = np.array([3.0, 0, 4.0, 0, 0, 0, 0, 0])
     ends = draw.ends(lambda rows: np.asarray(rows @ slopes), turning=False)
@@ -122,5 +121,5 @@ def test_both_ends_reach_as_far_as_the_zones_along_the_slopes(tmp_path: Path) ->
 )
 def test_zones_without_a_law_or_a_diameter_are_refused(law: str, zone: str, said: str, tmp_path: Path) -> None:
     with pytest.raises(SceneError) as caught:
-        scene_of(tmp_path, law, zone=zone)
+        reducer_of(tmp_path, law, zone=zone)
     assert said in str(caught.value)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from engine_gaps import GearRows, flank_gap
+from gearing.engine_gaps import GearRows, flank_gap
 from numpy.typing import NDArray
 from planetary_sets import random_deviations, reducer_3k
 from scipy.optimize import linprog

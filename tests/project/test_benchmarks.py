@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+import random_mutants
 import structure
 import studies
 import whole_gears
@@ -20,6 +21,7 @@ FOLDER = ROOT / "benchmarks"
 NUMBER = r"([\d,]*\.?\d+)"
 
 FEW: Mapping[str, tuple[str, ...]] = {
+    "app": ("spur_pair", "--times", "2"),
     "assemblies": ("--trials", "1024", "--rounds", "1", "--systems", "stack"),
     "convergence": ("--studies", "2", "--largest", "1024"),
     "curves": ("--trials", "20", "--positions", "8", "--long", "16", "--rounds", "1", "--workers", "1"),
@@ -30,6 +32,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "memory": ("--trials", "100", "--scenes", "spur_pair", "cover_on_base"),
     "pairs": ("--trials", "500", "--rounds", "1"),
     "planetary": ("--trials", "1000", "--rounds", "1", "--workers", "1"),
+    "random_mutants": ("--number", "2"),
     "rare": ("--seeds", "2", "--level", "1000"),
     "rig_records": ("--rows", "4000"),
     "scale": ("--sizes", "3x2z", "--trials", "100"),
@@ -44,6 +47,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
 """Arguments with which each benchmark takes seconds."""
 
 LONG = (
+    "app",
     "assemblies",
     "convergence",
     "curves",
@@ -65,6 +69,13 @@ LONG = (
 """Those that take more than a few of them."""
 
 ROWS: Mapping[str, tuple[str, ...]] = {
+    "app": tuple(
+        rf"spur_pair │ normal backlash │ 2000 +│ {question} +│ +{NUMBER} +│ +{NUMBER}"
+        for question in (
+            *("scene", "card, first", "estimate, first", "estimate while moving"),
+            *("card after release", "sliders", "check", "keep"),
+        )
+    ),
     "assemblies": (rf"3-2-1 stack of three blocks, 20 contributors +│ +{NUMBER} │ +{NUMBER} │ +{NUMBER}",),
     "convergence": tuple(
         rf"sigma driver at one position +{sampler} +order -?[\d.]+ +at 1024: {NUMBER} um"
@@ -108,6 +119,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}",
         rf"one drawn again +│ +{NUMBER} │ +{NUMBER} │ +{NUMBER}",
     ),
+    "random_mutants": (rf"(?m)^tol3d/[\w/]+\.py:{NUMBER}\n    \S.*\n    \S.*\n",),
     "rare": (
         rf"importance sampling: {NUMBER} of 2 intervals hold 0.0507 ppm",
         rf"mean {NUMBER} ppm, spread {NUMBER} %",
@@ -186,6 +198,15 @@ def test_reducers_are_timed_by_each_method(capsys: pytest.CaptureFixture[str]) -
 
 
 @pytest.mark.slow
+def test_the_app_is_timed_in_a_browser(capsys: pytest.CaptureFixture[str]) -> None:
+    importlib.import_module("app").main(["spur_pair", "--browser", "--times", "3"])
+    printed = capsys.readouterr().out
+    found = re.fullmatch(rf"spur_pair: dashed curve on the screen after {NUMBER} ms, at most {NUMBER} ms\n", printed)
+    assert found, printed
+    assert 0 < float(found[1]) <= float(found[2])
+
+
+@pytest.mark.slow
 def test_whole_gears_find_the_backlash_of_thinned_teeth() -> None:
     """(Δs1 + Δs2) cos α of the means (24.5 and 26.5 µm thinner) at the nominal centre distance.
 
@@ -211,12 +232,7 @@ def test_levels_are_the_longest_path_with_each_cycle_one_place() -> None:
         "house.cellar": set[str](),
     }
     rooms = structure.arrows_between_rooms(files)
-    assert rooms == {
-        "hall": {"study", "cellar"},
-        "study": {"library"},
-        "library": {"study", "cellar"},
-        "cellar": set(),
-    }
+    assert rooms == {"hall": {"study", "cellar"}, "study": {"library"}, "library": {"study", "cellar"}, "cellar": set()}
     assert structure.named(rooms) == ("library <-> study",)
     assert structure.levels(rooms) == 3
     assert structure.named(files) == ()
@@ -242,6 +258,49 @@ class Sum:
 def compiled(rows): rows[0] = 1.0
 """
     assert structure.writers(source) == ["item", "attribute", "method", "keyword", "deleted"]
+
+
+def test_faults_of_a_source_are_these_and_no_others() -> None:
+    """One change each, listed by hand; bytes count, not signs: µ is two."""
+    source = """
+LEAST: Final[float] = 0.0
+@kernel("f8(f8[0])")
+def area(rows: Sequence[1], more: float = 3.0) -> Row[2]:
+    µ = -rows[0] * (more
+                    + 1)  # + is found in the code
+    if len(rows) <= 2 or f"{more + 1}" == "-" + "1":
+        raise ValueError(2.0 * more)
+    return max(µ, np.sin(more) - 7)
+"""
+    expected = [
+        (2, "LEAST: Final[float] = 1.0"),
+        (4, "def area(rows: Sequence[1], more: float = 4.5) -> Row[2]:"),
+        (5, "    µ = -rows[0] / (more"),
+        (5, "    µ = rows[0] * (more"),
+        (5, "    µ = -rows[1] * (more"),
+        (6, "                    - 1)  # + is found in the code"),
+        (6, "                    + 2)  # + is found in the code"),
+        (7, '    if len(rows) < 2 or f"{more + 1}" == "-" + "1":'),
+        (7, '    if len(rows) >= 2 or f"{more + 1}" == "-" + "1":'),
+        (7, '    if len(rows) <= 3 or f"{more + 1}" == "-" + "1":'),
+        (9, "    return min(µ, np.sin(more) - 7)"),
+        (9, "    return max(µ, np.sin(more) + 7)"),
+        (9, "    return max(µ, np.cos(more) - 7)"),
+        (9, "    return max(µ, np.sin(more) - 8)"),
+    ]
+    assert [(own.line, own.new) for own in random_mutants.faults("area.py", source)] == expected
+
+
+def test_a_draw_is_of_lines_of_their_own_and_another_by_another_seed() -> None:
+    first, again, other = (random_mutants.drawn(seed, 300) for seed in (1, 1, 2))
+    assert first == again
+    assert len({(own.file, own.line) for own in first}) == 300
+    assert len(set(first) & set(other)) < 30  # of some 10 000 lines: nine are expected in common
+    for own in first[:20]:
+        lines = (ROOT / own.file).read_text("utf-8").splitlines()
+        assert lines[own.line - 1] == own.old != own.new
+        lines[own.line - 1] = own.new
+        ast.parse("\n".join(lines))
 
 
 @pytest.mark.parametrize("name", studies.SYSTEMS)

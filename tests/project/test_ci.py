@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from places import ROOT
+from sets import SETS
 
 README = (ROOT / "README.md").read_text("utf-8")
 RUN = ROOT / ".ci" / "run"
@@ -77,9 +78,7 @@ def calls(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, str]]:
     return [(line.partition("|")[0], line.partition("|")[2]) for line in told.read_text("utf-8").splitlines()]
 
 
-def test_ci_runs_the_readme_s_commands_each_in_a_copy_of_its_own(
-    calls: list[tuple[str, str]],
-) -> None:
+def test_ci_runs_the_readme_s_commands_each_in_a_copy_of_its_own(calls: list[tuple[str, str]]) -> None:
     said = [words for _, words in calls]
     first, second = (  # environments are made meanwhile
         [words for folder, words in calls if Path(folder).name == copy] for copy in ("first", "second")
@@ -146,3 +145,9 @@ def test_the_tests_that_meet_the_oldest_versions_are_there() -> None:
     named = output(sys.executable, str(OLDEST), "--tests")
     assert len(named) == len(set(named)) > 5
     assert [name for name in named if not (ROOT / name).is_file()] == []
+
+
+@pytest.mark.parametrize("chosen", ["default", "ci"])
+def test_tests_that_leave_a_set_are_there(chosen: str) -> None:
+    listed = [test.split("::") for test in SETS[chosen]]
+    assert [own for own in listed if f"\ndef {own[1]}(" not in (ROOT / own[0]).read_text("utf-8")] == []

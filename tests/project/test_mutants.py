@@ -21,7 +21,6 @@ from py_compile import PycInvalidationMode
 
 import pytest
 from places import ROOT
-from thinned import NIGHTLY
 
 LIST = ROOT / "tests" / "mutants.toml"
 FAILED, PASSED = 1, 0  # pytest's exit codes; others mean that it could not run
@@ -51,7 +50,10 @@ COPIED = ("tol3d", "parts", "scenes", "tests", "benchmarks", "docs", "README.md"
 
 @dataclass(frozen=True)
 class Mutant:
-    """A fault: what it is, where, which text stands for which, the tests that must fail of it; nightly if slow."""
+    """A fault: what it is, where, which text stands for which, the tests that must fail of it, and by whom it is tried.
+
+    CI tries every third one and those with `ci`; those with `nightly` are slow, which it never tries.
+    """
 
     fault: str
     file: str
@@ -59,17 +61,14 @@ class Mutant:
     new: str
     tests: tuple[str, ...]
     nightly: bool = False
+    ci: bool = False
 
 
 MUTANTS = [
     Mutant(**{**entry, "tests": tuple(entry["tests"])}) for entry in tomllib.loads(LIST.read_text("utf-8"))["mutant"]
 ]
-
-
-STANDING = {entry["mutant"] for entry in NIGHTLY.values()}
-"""Those by which a test of CI stands for a nightly one."""
-OF_CI = STANDING | {own.fault for own in [own for own in MUTANTS if not own.nightly][::3]}
-"""Those that CI tries: every third one besides, of those whose tests are quick; the others are nightly."""
+QUICK = [own for own in MUTANTS if not own.nightly]
+OF_CI = {own.fault for own in (*QUICK[::3], *(own for own in QUICK if own.ci))}
 
 
 class Tree:

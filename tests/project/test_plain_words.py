@@ -46,9 +46,7 @@ PHRASES = (
 )
 """Whole words: both forms of a verb stand here where they occur."""
 
-RENEWED = {
-    "docs/changelog.md": "its lines tell what was there once",
-}
+RENEWED = {"docs/changelog.md": "its lines tell what was there once"}
 PATTERN = re.compile("|".join(rf"\b{re.escape(phrase)}\b" for phrase in PHRASES), re.IGNORECASE)
 
 

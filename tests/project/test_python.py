@@ -103,8 +103,7 @@ SHORT = ("spur_pair", "three_stage_train", "door")
 
 
 @pytest.mark.parametrize(
-    "scene",
-    [own if own in SHORT else pytest.param(own, marks=pytest.mark.slow) for own in bundled_scenes()],
+    "scene", [own if own in SHORT else pytest.param(own, marks=pytest.mark.slow) for own in bundled_scenes()]
 )
 def test_every_bundled_scene_has_a_frame(scene: str, tmp_path: Path) -> None:
     """Each value of each column once: as many columns as values a trial."""

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from fixtures import Command
 from places import ROOT
+from scene_texts import written
 
 from tol3d import load_scene, open_run, run_scene
 from tol3d.report import run_report
@@ -36,8 +37,7 @@ def test_it_is_short() -> None:
 
 
 def test_its_scene_runs(tmp_path: Path) -> None:
-    scene = tmp_path / "scene.yaml"
-    scene.write_text(indented_block("scene: spur pair at the drive end"), "utf-8")
+    scene = written(indented_block("scene: spur pair at the drive end"), tmp_path)
     load_scene(scene)
     assert run_scene(scene, out=tmp_path / "run").summary["status"]["ok"] == 2000
 

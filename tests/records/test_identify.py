@@ -11,6 +11,7 @@ import pytest
 from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, START, arcsec, ends_of, identified_by, passes, within
 
 from tol3d.apps.records.alignment import hidden_shift
+from tol3d.apps.records.bins import BinSums
 from tol3d.apps.records.cautions import refuse_other_gear
 from tol3d.apps.records.csv_file import Block
 from tol3d.apps.records.findings import Identified, Settings
@@ -104,6 +105,19 @@ def test_rows_too_far_apart_for_tooth_mesh_are_warned_of(samples: int, orders: t
     found = identified_by(REFERENCE, replace(ENCODERS, turns=4.0, samples=samples, tooth_mesh=5 * ARCSEC))
     assert found.fit.terms.teeth == orders
     assert [words in own for own in found.warnings if "rows a tooth of the driver" in own] == [True] * bool(words)
+
+
+def test_a_bin_holds_the_means_of_its_rows() -> None:
+    """Three rows of one bin, then the same again as gathered ones: means stay, rows double."""
+    sums, again = BinSums(PAIR), BinSums(PAIR)
+    phi1, error, torque = 0.1 + np.array([0.0, 1e-7, 5e-7]), np.array([1e-5, 2e-5, 6e-5]), np.array([1.0, 2.0, 6.0])
+    sums.add(phi1, error, torque)
+    for _ in range(2):
+        again.add_bins(sums.bins(0.5e-5), 0.2e-5)
+    for found, rows in ((sums.bins(0.5e-5), 3), (again.bins(0.2e-5), 6)):
+        means = [float(own[0]) for own in (found.phi1, found.travel, found.error, found.torque)]
+        assert found.rows.tolist() == [rows]
+        assert means == pytest.approx([0.1 + 2e-7, 0.1 + 2e-7, 3.5e-5, 3.0], abs=1e-12)
 
 
 def test_torques_are_extrapolated_to_none() -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from fixtures import Command
 from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, scene_in
+from scene_texts import scene_of
 
 from tol3d import load_scene, run_scene
 from tol3d.apps.records import csv_file
@@ -81,9 +82,7 @@ def test_files_of_others_are_not_replaced(tol3d: Command, tmp_path: Path) -> Non
 def test_a_scene_of_constants_is_read_as_the_rig_counts_and_written_back(tmp_path: Path, flank: str) -> None:
     """theta1 = -sigma psi1, theta2 = sigma (psi2 + pi + pi/z2) - j_c/2: there and back again."""
     mesh = SceneMesh.of(simulation_of(load_scene(scene_in(tmp_path, flank))), None).mesh
-    path = tmp_path / "identified.yaml"
-    path.write_text(scene_text(REFERENCE, mesh, "again"), encoding="utf-8")
-    found = SceneMesh.of(simulation_of(load_scene(path)), None).specimen()
+    found = SceneMesh.of(simulation_of(scene_of(scene_text(REFERENCE, mesh, "again"), tmp_path)), None).specimen()
     assert found.e1 == pytest.approx(REFERENCE.e1, abs=1e-12)
     assert found.normal_backlash == pytest.approx(REFERENCE.normal_backlash, abs=1e-12)
     for angle, own in ((found.theta1, REFERENCE.theta1), (found.theta2, REFERENCE.theta2)):

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from covering import covering
 from hypothesis import given
 from hypothesis import strategies as st
 from loose_summaries import typed_measure, typed_run, valid
@@ -19,6 +18,7 @@ from matplotlib.patches import FancyBboxPatch, Polygon
 from matplotlib.text import Text
 from of_kind import known
 from printing import printed, row_of
+from sets import covering
 
 from tol3d.gearing.presenting.chain import chain_figure
 from tol3d.gearing.presenting.shown_stage import shafts_along, stages_of, sums_of, trains_of

@@ -125,10 +125,7 @@ class Longer(Thing):
 
 
 def test_a_column_that_a_class_declares_anew_stands_where_it_stood() -> None:
-    assert declared_table("", [("one", Longer("bolt"))]).csv().splitlines() == [
-        ",twice the letters,initial",
-        "one,8,b",
-    ]
+    assert declared_table("", [("one", Longer("bolt"))]).csv().splitlines() == [",twice the letters,initial", "one,8,b"]
 
 
 class Described(Section):

@@ -2,14 +2,12 @@
 
 import csv
 import io
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from printing import printed
-from toys.parabola import PARABOLA
-from toys.registered import TOYS, known
+from toys.registered import TOYS
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.report import comparison_report, run_report
@@ -17,15 +15,11 @@ from tol3d.report.joint import MOST_PAIRS, correlation_blocks, yield_lines
 from tol3d.report.page import Table, page
 from tol3d.report.table import Detail
 
+pytestmark = pytest.mark.usefixtures("springs")
+
 SPRING = TOYS / "parabola" / "spring.yaml"
 TRIALS = 4000
 SCALARS = ("height", "anywhere", "highest", "room")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def springs() -> Iterator[None]:
-    with known(PARABOLA):
-        yield
 
 
 @pytest.fixture(scope="module")

@@ -25,10 +25,7 @@ def rows_of(text: str) -> list[list[str]]:
 
 def test_a_table_is_written_with_all_digits_and_texts_are_quoted_where_they_must_be() -> None:
     third = 1 / 3
-    rows = [
-        Row("a, b", [Shown("0.333", third), "left"], unit="um"),
-        Row("  inset", [Shown("–", None), 'a "name"']),
-    ]
+    rows = [Row("a, b", [Shown("0.333", third), "left"], unit="um"), Row("  inset", [Shown("–", None), 'a "name"'])]
     written = Table("[µm]", [Heading("x"), Heading("side", words=True)], rows).csv()
     assert rows_of(written) == [
         ["[µm]", "unit", "x", "side"],

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from oracles.train import involute
 from rich.console import Console
 from scipy.stats import norm
 
@@ -77,10 +78,6 @@ def table_in(text: str, corner: str) -> Table:
         assert label not in rows
         rows[label] = dict(zip(headings, cells, strict=True))
     return rows
-
-
-def involute(angle: float) -> float:
-    return math.tan(angle) - angle
 
 
 def nominal_play() -> float:

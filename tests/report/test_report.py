@@ -22,6 +22,7 @@ from places import SCENES, SPUR_PAIR
 from printing import printed, row_of
 from rendering import renders
 from rich.console import RenderableType
+from scene_texts import scene_of
 from scipy.stats import norm
 
 from tol3d import load_scene
@@ -309,8 +310,7 @@ study: {trials: 10}
 
 
 def test_check_names_the_measures_whose_shares_no_closed_form_tells(run: Run, tmp_path: Path) -> None:
-    (tmp_path / "ways.yaml").write_text(TWO_WAYS, encoding="utf-8")
-    text = one_line(check_report(simulation_of(load_scene(tmp_path / "ways.yaml"))))
+    text = one_line(check_report(simulation_of(scene_of(TWO_WAYS, tmp_path))))
     assert "no shares of both: the tighter load path counts, which is no sum; run gives the shares of its" in text
     assert "no shares" not in one_line(check_report(simulation_again(run)))
 
@@ -719,11 +719,7 @@ def test_marks_lie_on_both_gears(run: Run) -> None:
 
 @pytest.mark.parametrize(
     ("which", "fmt", "message"),
-    [
-        (24, "glb", "expected 0 to 23"),
-        ("best", "glb", "got 'best'"),
-        (0, "obj", "expected one of stl, ply, glb, step"),
-    ],
+    [(24, "glb", "expected 0 to 23"), ("best", "glb", "got 'best'"), (0, "obj", "expected one of stl, ply, glb, step")],
 )
 def test_what_is_not_there_is_refused_in_words(run: Run, tmp_path: Path, which: str, fmt: str, message: str) -> None:
     with pytest.raises(InputError, match=message):

@@ -7,6 +7,7 @@ from types import NoneType
 from typing import Any, get_args, get_origin
 
 import pytest
+from scene_texts import scene_of
 
 from tol3d import Run, run_scene
 from tol3d.assembly.summary_types import AssemblyMeasureSummary
@@ -15,7 +16,7 @@ from tol3d.report.histogram import histogram_figure
 from tol3d.report.sheet import as_text
 from tol3d.report.shown_unit import BUILDS, LENGTHS, shown_run
 from tol3d.report.table import Detail, run_report
-from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.simulate import Overrides, simulation_of
 from tol3d.study.runs.summary.agreement import Witnessed
 from tol3d.study.runs.summary.values import Section
 
@@ -88,8 +89,14 @@ def test_a_picture_has_the_unit_and_the_numbers_of_the_table(run: Run) -> None:
 
 
 def test_check_shows_it_alike(tmp_path: Path) -> None:
-    (tmp_path / "post.yaml").write_text(SCENE.replace("lower_limit: 40.2 mm", "lower_limit: 40.225 mm"), "utf-8")
-    text = as_text(check_report(simulation_of(load(tmp_path / "post.yaml"), Overrides())), 200)
+    text = as_text(
+        check_report(
+            simulation_of(
+                scene_of(SCENE.replace("lower_limit: 40.2 mm", "lower_limit: 40.225 mm"), tmp_path), Overrides()
+            )
+        ),
+        200,
+    )
     assert re.search(r"height +gap +40.225 to 40.23 mm +40.2200 +40.2200 +40.2200 +40.2200 +mm", text)
     assert re.search(r"ledge +gap +≤ 1200 µm +990.000 +990.000 +990.000 +990.000 +µm", text)
     assert "height: nominal 40.2200 mm is outside its limits 40.225 to 40.23 mm" in text

@@ -1,7 +1,6 @@
 """A system that is no gear is run, shown, compared and exported by the commands: a package offers it, nothing else."""
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import cadquery as cq
@@ -14,9 +13,8 @@ from of_kind import known as known_value
 from of_kind import of_kind
 from rendering import renders
 from schemas import validate
-from toys.parabola import PARABOLA
 from toys.parabola.showing import SIDE
-from toys.registered import TOYS, known
+from toys.registered import TOYS
 
 from tol3d import InputError, Run, check_scene, compare_runs, open_run, replay
 from tol3d.report import export_run, view_run
@@ -25,15 +23,11 @@ from tol3d.report.spectrum_table import largest_orders, spectrum_blocks
 from tol3d.study.runs.summary.sample import SpectrumSample
 from tol3d.study.runs.summary.values import made
 
+pytestmark = pytest.mark.usefixtures("springs")
+
 SPRING = TOYS / "parabola" / "spring.yaml"
 ALL = ("--pictures", "all")
 HEIGHT = "geometric:height"
-
-
-@pytest.fixture(scope="module", autouse=True)
-def springs() -> Iterator[None]:
-    with known(PARABOLA):
-        yield
 
 
 @pytest.fixture(scope="module")

@@ -55,11 +55,7 @@ def test_a_refused_write_of_a_run_names_its_file_and_exits_with_2(
 
 @pytest.mark.parametrize("number", REFUSALS)
 def test_a_refused_picture_or_export_names_its_file_and_exits_with_2(
-    number: int,
-    tol3d: Command,
-    finished: Run,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    number: int, tol3d: Command, finished: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Figure, "savefig", refused(number))
     monkeypatch.setattr(Path, "write_bytes", refused(number))

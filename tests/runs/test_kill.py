@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from fixtures import Command
 from places import SPUR_PAIR
+from scene_texts import written
 
 from tol3d import InputError, Overrides, Run, RunError, open_run, replay, run_scene
 from tol3d.simulate import Watch
@@ -289,8 +290,7 @@ def test_resume_needs_something_to_go_on_with(tmp_path: Path) -> None:
 def test_resume_of_something_else_says_what_differs_and_leaves_it(tmp_path: Path) -> None:
     cut(tmp_path / "run", 3 * BLOCK)
     before = sorted(tmp_path.rglob("*"))
-    other = tmp_path / "scene.yaml"
-    other.write_text(SPUR_PAIR.read_text("utf-8").replace("172.5 mm", "172.51 mm"), "utf-8")
+    other = written(SPUR_PAIR.read_text("utf-8").replace("172.5 mm", "172.51 mm"), tmp_path)
     seeded = Overrides(trials=ANALYTIC.trials, engine="analytic", seed=5)
     for scene, study, execution, words in (
         (SPUR_PAIR, seeded, RESUME, "study: seed 1 there, 5 now"),

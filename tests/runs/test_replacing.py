@@ -127,8 +127,7 @@ def test_the_same_study_is_replaced_and_nothing_is_left_beside_it(tmp_path: Path
 
 
 @pytest.mark.parametrize(
-    ("other", "words"),
-    [(OTHER_SEED, "study: seed 1 there, 5 now"), (MORE, "study: trials 20 there, 30 now")],
+    ("other", "words"), [(OTHER_SEED, "study: seed 1 there, 5 now"), (MORE, "study: trials 20 there, 30 now")]
 )
 def test_another_study_is_refused_until_it_is_forced(other: Overrides, words: str, tmp_path: Path) -> None:
     a_run(tmp_path / "run")

@@ -219,8 +219,7 @@ def test_an_edit_of_a_summary_is_refused(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("scene", "share"),
-    [("train", 0.014), *(pytest.param(*edits, marks=pytest.mark.slow) for edits in MORE_EDITS)],
+    ("scene", "share"), [("train", 0.014), *(pytest.param(*edits, marks=pytest.mark.slow) for edits in MORE_EDITS)]
 )
 def test_an_edit_with_its_checksum_is_refused_or_harmless(
     scene: str, share: float, request: pytest.FixtureRequest, tmp_path: Path

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from fixtures import Command
 from places import SCENES
+from scene_texts import scene_of
 
 from tol3d import SceneError
 from tol3d.kinds import load_scene
@@ -37,8 +38,7 @@ def warned(tmp_path: Path) -> Warned:
         for file in SCENES.glob("*.csv"):
             if not (tmp_path / file.name).exists():
                 (tmp_path / file.name).write_bytes(file.read_bytes())
-        (tmp_path / "scene.yaml").write_text(text, "utf-8")
-        scene = load_scene(tmp_path / "scene.yaml")
+        scene = scene_of(text, tmp_path)
         return *scene.grammar.warnings(scene), *of_the_system(scene)
 
     return of
@@ -97,8 +97,7 @@ def test_what_is_less_than_physical_is_warned_of(tmp_path: Path) -> None:
         .read_text("utf-8")
         .replace("lower: 2 um, upper: 30 um", "lower: -3 um, upper: 30 um")
     )
-    (tmp_path / "scene.yaml").write_text(text, "utf-8")
-    (line,) = simulation_of(load_scene(tmp_path / "scene.yaml")).warnings
+    (line,) = simulation_of(scene_of(text, tmp_path)).warnings
     assert line == ("tolerances.bearing clearance: expected at least 0 um, for less is not physical, got down to -3 um")
 
 
@@ -136,8 +135,7 @@ def test_a_slip_in_a_drawing_is_warned_of(word: str, values: tuple[str, str], sa
     lines = []
     for value in values:
         text = TWO.replace(word, value).replace("FAR", "1 m").replace("WIDE", "1 mm").replace("CLASS", "9 mm")
-        (tmp_path / "scene.yaml").write_text(text, "utf-8")
-        scene = load_scene(tmp_path / "scene.yaml")
+        scene = scene_of(text, tmp_path)
         lines.append(list(scene.grammar.warnings(scene)))
     assert lines[0] == []
     assert [line.startswith(said) for line in lines[1]] == [True]
@@ -508,8 +506,7 @@ SIZES = {
 
 
 def of_the_plate(tmp_path: Path, tolerance: str) -> Sequence[str]:
-    (tmp_path / "plate.yaml").write_text(PLATE.replace("TOLERANCE", tolerance), "utf-8")
-    scene = load_scene(tmp_path / "plate.yaml")
+    scene = scene_of(PLATE.replace("TOLERANCE", tolerance), tmp_path)
     return tuple(scene.grammar.warnings(scene))
 
 

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_texts import scene_of
 
-from tol3d import load_scene, open_run, replay, run_scene
+from tol3d import open_run, replay, run_scene
 from tol3d.errors import RunError, SceneError
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.study.execution.pools import Execution
@@ -37,8 +38,7 @@ ROWS = [f"{k},{side},{k}.{n}" for n, side in enumerate(("right", "left")) for k 
 
 def model(folder: Path, entry: str, lines: Sequence[str]) -> Model:
     (folder / "teeth.csv").write_text("\n".join(lines) + "\n", "utf-8")
-    (folder / "scene.yaml").write_text(SCENE.format(entry=entry), "utf-8")
-    return model_from_scene(load_scene(folder / "scene.yaml"))
+    return model_from_scene(scene_of(SCENE.format(entry=entry), folder))
 
 
 def given_um(folder: Path, entry: str, lines: Sequence[str]) -> list[float]:
@@ -117,11 +117,7 @@ def test_all_teeth_have_the_mean_of_those_that_were_measured(tmp_path: Path) -> 
         ),
         (INDEX, [HEADER, *ROWS[:5]], "expected no column 'flank' beside flanks: together in the header"),
         (SLOPE.replace("column: d", "column: d, unit: deg"), [HEADER], "expected a unit of length such as um, got"),
-        (
-            SLOPE.replace("column: d", "column: d, counted: up"),
-            [HEADER],
-            "law.counted",
-        ),
+        (SLOPE.replace("column: d", "column: d, counted: up"), [HEADER], "law.counted"),
         (
             f"{SLOPE}, limits: {{size: 3 um}}",
             [HEADER, *ROWS],
@@ -137,9 +133,8 @@ def test_what_is_wrong_is_said_with_its_place(entry: str, lines: Sequence[str], 
 
 
 def test_a_file_that_is_missing_is_named_at_its_place(tmp_path: Path) -> None:
-    (tmp_path / "scene.yaml").write_text(SCENE.format(entry=SLOPE), "utf-8")
     with pytest.raises(SceneError, match=r"tolerances\.teeth\.law\.file: .*teeth\.csv"):
-        load_scene(tmp_path / "scene.yaml")
+        scene_of(SCENE.format(entry=SLOPE), tmp_path)
 
 
 @pytest.mark.slow

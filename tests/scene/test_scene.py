@@ -21,7 +21,8 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 from said_fields import fields_said, fields_within, unsaid
-from scene_schema import judged
+from scene.scene_schema import judged
+from scene_texts import written
 
 from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
@@ -80,8 +81,7 @@ TIGHT = "distribution: {kind: normal, lower: -1 um, upper: 1 um}"
 
 
 def load(folder: Path, text: str, kinds: Grammar | None = None) -> Scene:
-    path = folder / "scene.yaml"
-    path.write_text(text, encoding="utf-8")
+    path = written(text, folder)
     return load_scene(path, kinds)
 
 

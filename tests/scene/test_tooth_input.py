@@ -3,10 +3,7 @@
 from pathlib import Path
 
 import pytest
-
-from tol3d import load_scene
-from tol3d.errors import SceneError
-from tol3d.gearing.system import gear_system
+from scene_texts import refusal
 
 SPUR = """
   pinion: {kind: spur_gear, teeth: 20, module: 2 mm, face_width: 12 mm}
@@ -29,11 +26,7 @@ FORM = "kind: profile_form, of: pinion, flanks: each, each: tooth, limits: {iso_
 
 
 def refused(folder: Path, tolerances: str, gears: str = SPUR) -> str:
-    path = folder / "scene.yaml"
-    path.write_text(f"scene: teeth\nparts:{gears}{REST}{tolerances}\n", "utf-8")
-    with pytest.raises(SceneError) as found:
-        gear_system(load_scene(path))
-    return str(found.value)
+    return refusal(f"scene: teeth\nparts:{gears}{REST}{tolerances}\n", folder)
 
 
 @pytest.mark.parametrize(

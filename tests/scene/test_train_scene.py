@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 from guides import quoted, text_of
 from of_kind import of_kind
-from scene_schema import judged
+from scene.scene_schema import judged
 
 from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
@@ -224,10 +224,7 @@ CHANGES = {
         ("[60 mm, 400 mm, 90 mm]", "[60 mm, 400 mm, 90 mm, 1 mm]"),
         "parts.arm.centre_of_mass: expected three lengths, such as [0 mm, 12 mm, 5 mm], got a list of 4",
     ),
-    "ratio 0": (
-        ("ratio: 152 ", "ratio: 0 "),
-        "moves.planetary reducer.ratio: expected a ratio other than 0, got 0",
-    ),
+    "ratio 0": (("ratio: 152 ", "ratio: 0 "), "moves.planetary reducer.ratio: expected a ratio other than 0, got 0"),
     "ratio in words": (
         ("ratio: 152 ", 'ratio: "152:1" '),
         "moves.planetary reducer.ratio: expected a number, got '152:1'",

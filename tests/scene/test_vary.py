@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from scene_texts import scene_of
 
 from tol3d import InputError, SceneError, load_scene
 from tol3d.scene import Scene
@@ -34,8 +35,7 @@ measures:
 
 @pytest.fixture
 def pair(tmp_path: Path) -> Scene:
-    (tmp_path / "pair.yaml").write_text(PAIR, encoding="utf-8")
-    return load(tmp_path / "pair.yaml")
+    return scene_of(PAIR, tmp_path)
 
 
 def content(scene: Scene) -> dict[str, Any]:
@@ -111,8 +111,7 @@ def test_a_scene_made_in_python_is_varied_too(pair: Scene) -> None:
 
 def test_an_entry_of_an_included_file_is_written_into_the_scene(tmp_path: Path) -> None:
     (tmp_path / "pair.yaml").write_text(PAIR, encoding="utf-8")
-    (tmp_path / "two.yaml").write_text("scene: two\ninclude: {left: pair.yaml, right: pair.yaml}\n", encoding="utf-8")
-    scene = load(tmp_path / "two.yaml")
+    scene = scene_of("scene: two\ninclude: {left: pair.yaml, right: pair.yaml}\n", tmp_path)
     field = "tolerances.left wheel thickness.distribution.upper"
     other = scene.with_({field: "-20 um"})
     expected = content(scene)

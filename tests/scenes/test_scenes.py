@@ -18,6 +18,7 @@ from expected import PRINTED, assert_met, expected, measures_of
 from gear_trials import drawn_trials
 from oracles import exact_eccentric
 from oracles.involute_gear import InvoluteGear
+from oracles.train import involute
 from places import SCENES as FOLDER
 from scipy.integrate import quad
 from scipy.stats import halfnorm, kstest, norm, uniform
@@ -39,10 +40,6 @@ Columns = Mapping[str, np.ndarray]
 
 SEEN = 1e-5  # um; where the exact engine's steps end
 TILT_NODES = 5e-4  # um; midpoint rule of tol3d for |tilt|, 3e-4 of a mean loss of 1.5 um
-
-
-def involute(angle: float) -> float:
-    return math.tan(angle) - angle
 
 
 # the scenes by hand -------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from expected import PRINTED, assert_met, expected, measures_of
 from of_kind import known, of_kind
 from oracles.train import (
     at_height,
+    involute,
     lean,
     moments,
     robot_lost_motion,
@@ -55,10 +56,6 @@ def robot() -> dict[str, tuple[float, float]]:
     found["lost motion"] = (mean * ARCMIN, sigma * ARCMIN)
     found["tip displacement"] = (mean * 763, sigma * 763)
     return found
-
-
-def involute(angle: float) -> float:
-    return math.tan(angle) - angle
 
 
 WORKING = math.acos(25.5 * COS / 25.75)  # of the first mesh of the table

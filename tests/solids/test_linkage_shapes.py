@@ -49,8 +49,7 @@ def test_a_gear_is_thinned_by_what_is_stated() -> None:
 
 
 @pytest.mark.parametrize(
-    ("scene", "part"),
-    [pytest.param(*own, marks=pytest.mark.slow) if own[1] in GEARS else own for own in WRITTEN],
+    ("scene", "part"), [pytest.param(*own, marks=pytest.mark.slow) if own[1] in GEARS else own for own in WRITTEN]
 )
 def test_a_mesh_is_closed_and_as_large_as_its_chord_error_allows(scene: str, part: str) -> None:
     shape = WRITTEN[scene, part]

@@ -55,11 +55,7 @@ def test_a_display_mesh_is_that_of_the_solid(cube: KeptShape) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "content",
-    [
-        b"no solid",
-        pytest.param(b"", marks=pytest.mark.slow),
-        pytest.param(b"\x00" * 1000, marks=pytest.mark.slow),
-    ],
+    [b"no solid", pytest.param(b"", marks=pytest.mark.slow), pytest.param(b"\x00" * 1000, marks=pytest.mark.slow)],
     ids=["text", "empty", "zeros"],
 )
 def test_what_is_no_solid_is_refused(content: bytes) -> None:

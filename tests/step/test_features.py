@@ -19,6 +19,7 @@ from foreign_parts import (
     step_file,
     turned,
 )
+from nist import references
 
 from tol3d.assembly.grammar.features import ConeSpec
 from tol3d.assembly.grammar.features.selector import SelectorSpec
@@ -36,12 +37,7 @@ EXACT = 1e-9  # mm; what the text of a file is written to, and rounding
 @pytest.fixture(scope="module")
 def solids(tmp_path_factory: pytest.TempPathFactory) -> StepFile:
     """All small solids in one file, which is read once."""
-    shapes = {
-        "halved": halved_plate(),
-        "block": slotted_block(),
-        "socket": socket(),
-        "turned": turned(halved_plate()),
-    }
+    shapes = {"halved": halved_plate(), "block": slotted_block(), "socket": socket(), "turned": turned(halved_plate())}
     return read_step(step_file(shapes, tmp_path_factory.mktemp("solids") / "solids.step"))
 
 
@@ -205,10 +201,6 @@ def instances(content: FileContent) -> dict[int, str]:
 
 def numbers_of(body: str) -> list[float]:
     return [float(own) for own in re.findall(r"(?<![#\w'])-?\d+\.\d*(?:E[-+]?\d+)?", body)]
-
-
-def references(body: str) -> list[int]:
-    return [int(own) for own in re.findall(r"#(\d+)", body)]
 
 
 @pytest.mark.parametrize("model", MODELS)

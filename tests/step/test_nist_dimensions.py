@@ -4,16 +4,12 @@ import math
 import re
 
 import pytest
-from nist import FILES, bodies, starting, step_text
+from nist import FILES, bodies, references, starting, step_text
 
 from tol3d.cad.step import Dimension
 
 COUNTS = {"CTC-01": 12, "FTC-07": 17, "FTC-10": 26, "STC-06": 17, "STC-07": 45, "CTC-05": 6}
 FACTORS = {"in": 25.4, "mm": 1.0, "deg": math.pi / 180}
-
-
-def references(body: str) -> list[int]:
-    return [int(each) for each in re.findall(r"#(\d+)", body)]
 
 
 def crude_measure(model: str, identifier: int) -> tuple[float, str]:

@@ -5,7 +5,7 @@ from itertools import chain
 from typing import Any
 
 import pytest
-from nist import FILES, bodies, starting, step_text
+from nist import FILES, bodies, references, starting, step_text
 
 from tol3d.cad.step import Tolerance, frame
 
@@ -25,10 +25,6 @@ def targets_of(model: str, letter: str) -> Any:
     datum = step_text(model).datum(letter)
     assert datum is not None
     return datum.targets
-
-
-def references(body: str) -> list[int]:
-    return [int(each) for each in re.findall(r"#(\d+)", body)]
 
 
 def crude_number(model: str, identifier: int) -> str:

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from limit_states import Formula, Value
+from oracles.limit_states import Formula, Value
 from printing import printed
+from scene_texts import scene_of
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.stats import norm
@@ -26,7 +27,6 @@ from tol3d.analyses.tolerance_search import Question, Target
 from tol3d.analyses.what_to_change import changes_of
 from tol3d.errors import InputError
 from tol3d.report.page import page
-from tol3d.simulate import load
 from tol3d.statistics.distributions.normal import Normal
 from tol3d.study.effects.acting_contributors import acting, looked_at
 from tol3d.study.system.contributor import Contributor
@@ -63,9 +63,7 @@ measures:
 {own}
 study: {{trials: {trials}, seed: 1}}
 """
-    place = folder / "across.yaml"
-    place.write_text(text, encoding="utf-8")
-    return simulation_of(load(place))
+    return simulation_of(scene_of(text, folder))
 
 
 def along(name: str, axis: str, law: str, of: str = "base.b") -> str:
@@ -257,9 +255,7 @@ def test_an_encoder_acts_at_a_dead_centre(tmp_path: Path) -> None:
         .read_text("utf-8")
         .replace("-2 arcmin, upper: 2 arcmin", "-120 arcmin, upper: 120 arcmin")
     )
-    place = tmp_path / "crank.yaml"
-    place.write_text(text, encoding="utf-8")
-    simulation = simulation_of(load(place))
+    simulation = simulation_of(scene_of(text, tmp_path))
     far, halfway = (own for own in simulation.system.measures if own.name in ("far end", "halfway"))
     assert "encoder of angle" in looked_at(simulation, far).names
     assert "encoder of angle" not in looked_at(simulation, halfway).names  # it has a slope

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from limit_states import formula
 from numpy.typing import NDArray
+from oracles.limit_states import formula
 from printing import printed
 from scipy import integrate, stats
 

@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 from places import SCENES
 from shipped import shipped
-from thinned import thinned
 
 from tol3d import Overrides, load_scene
 from tol3d.assembly.methods import TorsorMethod
@@ -67,14 +66,11 @@ def scaled(patch: pytest.MonkeyPatch, scene: str, name: str, factor: float) -> I
 
 @pytest.mark.parametrize(
     "scene",
-    thinned(
-        [
-            pytest.param(own, marks=pytest.mark.slow) if own in LONG else own
-            for own in (*shipped("assembly"), *shipped("machine"))
-            if own != "robot_arm"  # which takes minutes; test_assembly_scenes.py asks it of fewer trials
-        ],
-        4,
-    ),
+    [
+        pytest.param(own, marks=pytest.mark.slow) if own in LONG else own
+        for own in (*shipped("assembly"), *shipped("machine"))
+        if own != "robot_arm"  # which takes minutes; test_assembly_scenes.py asks it of fewer trials
+    ],
 )
 def test_no_shipped_scene_of_parts_is_warned_of(scene: str) -> None:
     found = explained(scene, 1000)

@@ -23,7 +23,6 @@ from oracles.random_scenes import random_scenes
 from places import SCENES
 from rich.console import Console
 from shipped import shipped
-from thinned import thinned
 
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.gearing.engines.exact import ExactEngine
@@ -290,8 +289,7 @@ LONG = ("tooth_deviations", "measured_teeth", "two_sided_te", "ring_train", "int
 
 
 @pytest.mark.parametrize(
-    "scene",
-    thinned([pytest.param(own, marks=pytest.mark.slow) if own in LONG else own for own in shipped("gearing")], 4),
+    "scene", [pytest.param(own, marks=pytest.mark.slow) if own in LONG else own for own in shipped("gearing")]
 )
 def test_no_shipped_scene_is_warned_of(scene: str) -> None:
     found = explained(model_of(scene), 1000)

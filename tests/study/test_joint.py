@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from printing import printed
 from schemas import validate
 from scipy import stats
-from toys.parabola import PARABOLA
-from toys.registered import TOYS, known
+from toys.registered import TOYS, spring_scene
 
 from tol3d import Overrides, Run, RunError, open_run, run_scene
 from tol3d.report import run_report
@@ -25,6 +24,8 @@ from tol3d.study.runs.summary.kinds import default_kinds
 from tol3d.study.runs.summary.text import typed
 from tol3d.study.tallies import joint as joint_of_study
 from tol3d.study.tallies.joint import MOST_IN_SUMMARY
+
+pytestmark = pytest.mark.usefixtures("springs")
 
 SPRING = TOYS / "parabola" / "spring.yaml"
 TRIALS = 20_000
@@ -46,26 +47,9 @@ LIMITS: Mapping[str, Limits] = {
 }
 
 
-@pytest.fixture(scope="module", autouse=True)
-def springs() -> Iterator[None]:
-    with known(PARABOLA):
-        yield
-
-
 @pytest.fixture(scope="module")
 def run(springs: None, tmp_path_factory: pytest.TempPathFactory) -> Run:
     return run_scene(SPRING, overrides=Overrides(trials=TRIALS), out=tmp_path_factory.mktemp("joint") / "run")
-
-
-def scene_with(folder: Path, *changes: tuple[str, str]) -> Path:
-    """The scene with other words, beside its file."""
-    text = SPRING.read_text("utf-8")
-    for old, new in changes:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    (folder / "spring.yaml").write_text(text, "utf-8")
-    (folder / "spring.csv").write_text((TOYS / "parabola" / "spring.csv").read_text("utf-8"), "utf-8")
-    return folder / "spring.yaml"
 
 
 def values_of(run: Run, method: str, name: str) -> NDArray[np.float64]:
@@ -110,7 +94,7 @@ def test_trials_fail_in_this_study(run: Run) -> None:
 
 
 def test_of_one_limited_measure_the_yield_is_what_is_not_out(tmp_path: Path) -> None:
-    scene = scene_with(tmp_path, (", lower_limit: -60 um, upper_limit: 90 um", ""))
+    scene = spring_scene(tmp_path, (", lower_limit: -60 um, upper_limit: 90 um", ""))
     scene.write_text(scene.read_text("utf-8").replace(", upper_limit: 100 um", ""), "utf-8")
     summary = run_scene(scene, overrides=Overrides(trials=3000), out=tmp_path / "run").summary
     assert summary["joint"]["limited"] == ["room"]
@@ -223,7 +207,7 @@ def test_of_more_measures_than_fit_the_summary_has_the_most_correlated(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(joint_of_study, "MOST_IN_SUMMARY", 2)
-    again = run_scene(scene_with(tmp_path), out=tmp_path / "run")
+    again = run_scene(spring_scene(tmp_path), out=tmp_path / "run")
     whole, own = run.summary["joint"], again.summary["joint"]
     first, second = (SCALARS.index(name) for name in next(iter(pairs_of(run))))
     which = sorted((first, second))
@@ -240,7 +224,7 @@ def test_of_more_measures_than_fit_the_summary_has_the_most_correlated(
 @pytest.mark.slow
 def test_correlations_of_more_measures_than_fit_the_summary_are_all_in_the_table(tmp_path: Path) -> None:
     more = "".join(f"  h{k}: {{kind: height, of: lift, upper_limit: {90 + k} um}}\n" for k in range(MOST_IN_SUMMARY))
-    scene = scene_with(tmp_path, ("measures:\n", f"measures:\n{more}"))
+    scene = spring_scene(tmp_path, ("measures:\n", f"measures:\n{more}"))
     run = run_scene(scene, overrides=Overrides(trials=400), out=tmp_path / "run")
     own, count = run.summary["joint"], MOST_IN_SUMMARY + len(SCALARS)
     assert len(own["correlated"]) == MOST_IN_SUMMARY
@@ -254,7 +238,7 @@ def test_correlations_of_more_measures_than_fit_the_summary_are_all_in_the_table
 
 def test_even_samplers_tell_the_error_of_the_yield_by_replicates_and_none_of_r(tmp_path: Path) -> None:
     study = f"trials: 16384, seed: 7, sampler: sobol, replicates: {REPLICATES}"
-    run = run_scene(scene_with(tmp_path, ("trials: 20000, seed: 7", study)), out=tmp_path / "run")
+    run = run_scene(spring_scene(tmp_path, ("trials: 20000, seed: 7", study)), out=tmp_path / "run")
     joint = run.summary["joint"]
     shares = 1e6 * good(run, "geometric").reshape(REPLICATES, -1).mean(axis=1)
     half = stats.t.ppf(0.975, REPLICATES - 1) * shares.std(ddof=1) / math.sqrt(REPLICATES)

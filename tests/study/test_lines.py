@@ -4,8 +4,8 @@ import math
 from pathlib import Path
 
 import pytest
-from assembly_trials import scene_of
 from fixtures import Command
+from scene_texts import scene_of, written
 
 from tol3d import InputError
 from tol3d.analyses.allocation import allocation
@@ -80,9 +80,7 @@ def included(folder: Path, without: str = "", own: str = "") -> Path:
     (folder / "parts" / "pair.yaml").write_text(pair, "utf-8")
     third = f"  top: {{file: parts/ring.yaml, at: [0 mm, 0 mm, 20 mm]{without}}}\n"
     text = f"scene: included\ninclude:\n  both: parts/pair.yaml\n{third}parts:\n{BASE}tolerances:\n{FLATNESS}{own}"
-    path = folder / "scene.yaml"
-    path.write_text(text + pile(["both low ring", "both high ring", "top ring"]), "utf-8")
-    return path
+    return written(text + pile(["both low ring", "both high ring", "top ring"]), folder)
 
 
 def halved(response: Response, line: str) -> float:
@@ -132,7 +130,7 @@ def test_an_include_that_states_the_tolerance_itself_is_none_of_them(tmp_path: P
 
 @pytest.mark.parametrize("kind", ["like", "include"])
 def test_an_allocation_has_one_value_and_a_scene_with_it_is_the_same(kind: str, tmp_path: Path) -> None:
-    path = included(tmp_path) if kind == "include" else tmp_path / "assembly.yaml"
+    path = included(tmp_path) if kind == "include" else tmp_path / "scene.yaml"
     scene = load(path) if kind == "include" else scene_of(LIKE.replace("OWN", ""), tmp_path)
     line = "thickness of parts/ring.yaml" if kind == "include" else "thickness"
     response = response_of(simulation_of(scene), analytic=True)
@@ -179,7 +177,7 @@ def test_legs_of_a_machine_share_their_lines_and_its_floats_have_none() -> None:
 
 def test_one_copy_alone_is_refused_with_the_name_of_the_line(tmp_path: Path, tol3d: Command) -> None:
     scene_of(LIKE.replace("OWN", ""), tmp_path)
-    code, _, told = tol3d("what-if", str(tmp_path / "assembly.yaml"), "--factor", "thickness of ring 3=0.5")
+    code, _, told = tol3d("what-if", str(tmp_path / "scene.yaml"), "--factor", "thickness of ring 3=0.5")
     assert code == 2
     assert "expected 'thickness', one line of the scene" in told
 

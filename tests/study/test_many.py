@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from gear_trials import drawn_trials, simulated
 from places import SPUR_PAIR
+from scene_texts import written
 
 from tol3d import load_scene
 from tol3d.cad.solids import spur_cad
@@ -154,8 +155,7 @@ def test_strips_of_one_tooth_alone_are_those_of_the_whole_gear(gear: SpurGear, m
 def test_a_gear_of_ten_thousand_teeth_has_a_witness(tmp_path: Path) -> None:
     """Built whole it took five minutes and some gigabytes; a clock or a meter of memory is not asked, a tooth is."""
     text = HEAD.replace("teeth: 110", "teeth: 10000").replace("172.5 mm", "12535 mm")
-    path = tmp_path / "scene.yaml"
-    path.write_text(f"{text}study: {{trials: 50, seed: 1, engine: exact, witness: 5}}\n", "utf-8")
+    path = written(f"{text}study: {{trials: 50, seed: 1, engine: exact, witness: 5}}\n", tmp_path)
     run = run_scene(path, out=tmp_path / "run")
     own = run.summary["witness"]["measures"]["normal backlash"]
     assert 0 < own["max_abs_difference"] <= own["expected_at_most"] + own["allowance"]

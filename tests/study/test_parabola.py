@@ -7,7 +7,7 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,13 +19,14 @@ from numpy.typing import NDArray
 from places import TESTS
 from printing import printed
 from runs.test_kill import HANGS, SMALL_BLOCKS
+from scene_texts import scene_of
 from schemas import validate
 from scipy import integrate, stats
-from toys.parabola import PARABOLA, methods
+from toys.parabola import methods
 from toys.parabola.cumulants import Cumulants, parabola, uniform
 from toys.parabola.springs import LOST_LEVER, coil_weights
 from toys.parabola.system import KNOTS_TO, ParabolaSystem
-from toys.registered import TOYS, known, offered
+from toys.registered import TOYS, offered, spring_scene
 
 from tol3d import Overrides, Run, SceneError, load_scene, open_run, run_scene
 from tol3d.report.table import Detail, run_report
@@ -38,6 +39,8 @@ from tol3d.study.runs.summary.sample import SpectrumSample
 from tol3d.study.runs.worst import worst_trial
 from tol3d.study.system.method import Answers
 from tol3d.study.system.trials import Trials
+
+pytestmark = pytest.mark.usefixtures("springs")
 
 SPRING = TOYS / "parabola" / "spring.yaml"
 TRIALS = 60_000
@@ -55,12 +58,6 @@ AT_RANDOM = Cumulants(0.0, WAVE**2 / 2, 0.0, (3 * 3 / 8 - 3 / 4) * WAVE**4)
 """Cumulants of w sin u: its fourth moment is 3 s^4 3/8."""
 HALF_NORMAL = Cumulants(WAVE * math.sqrt(2 / math.pi), WAVE**2 * (1 - 2 / math.pi))
 """Cumulants of |w|, which the highest of a turn adds."""
-
-
-@pytest.fixture(scope="module", autouse=True)
-def springs() -> Iterator[None]:
-    with known(PARABOLA):
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -313,23 +310,11 @@ def test_chords_are_an_engine_of_processes_and_made_once_in_the_parent(tmp_path:
 # samplers -----------------------------------------------------------------------------------------
 
 
-def scene_with(folder: Path, *changes: tuple[str, str]) -> Path:
-    """The scene with other words, beside its file."""
-    text = SPRING.read_text("utf-8")
-    for old, new in changes:
-        assert text.count(old) == 1, old
-        text = text.replace(old, new)
-    path = folder / "spring.yaml"
-    path.write_text(text, "utf-8")
-    (folder / "spring.csv").write_text((TOYS / "parabola" / "spring.csv").read_text("utf-8"), "utf-8")
-    return path
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("sampler", ["sobol", "latin_hypercube"])
 def test_even_samplers_find_the_moments_and_tell_their_errors_by_replicates(sampler: str, tmp_path: Path) -> None:
     study = f"trials: 32768, seed: 7, sampler: {sampler}, replicates: 16"
-    run = run_scene(scene_with(tmp_path, ("trials: 20000, seed: 7", study)), out=tmp_path / "run")
+    run = run_scene(spring_scene(tmp_path, ("trials: 20000, seed: 7", study)), out=tmp_path / "run")
     own = found(run, "height")
     assert own["error_by"] == "replicates"
     plain = EXACT.sigma / math.sqrt(32768)
@@ -340,7 +325,7 @@ def test_even_samplers_find_the_moments_and_tell_their_errors_by_replicates(samp
 
 def test_automatic_trials_stop_at_the_error_that_was_asked_for(tmp_path: Path) -> None:
     until = "trials: auto, until: {height: {mean: 0.2 um, sigma: 0.3 um}}, seed: 7"
-    run = run_scene(scene_with(tmp_path, ("trials: 20000, seed: 7", until)), out=tmp_path / "run")
+    run = run_scene(spring_scene(tmp_path, ("trials: 20000, seed: 7", until)), out=tmp_path / "run")
     own = found(run, "height")
     assert own["mean_se"] <= 0.2
     assert own["sigma_se"] <= 0.3
@@ -467,9 +452,8 @@ def test_a_system_from_outside_has_figures_of_its_own_sections_published(run: Ru
         (("share_percent: 3", "share_percents: 3"), 'unknown key "share_percents"; did you mean "share_percent"?'),
     ):
         assert change[0] in text
-        (tmp_path / "spring.yaml").write_text(text.replace(*change), "utf-8")
         with pytest.raises(SceneError, match=re.escape(words)):
-            load_scene(tmp_path / "spring.yaml")
+            scene_of(text.replace(*change), tmp_path)
 
 
 # what is refused ------------------------------------------------------------------------------------
@@ -488,18 +472,18 @@ def test_a_system_from_outside_has_figures_of_its_own_sections_published(run: Ru
 )
 def test_engines_and_witnesses_of_others_are_refused(change: tuple[str, str], words: str, tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=words):
-        simulation_of(load_scene(scene_with(tmp_path, change)))
+        simulation_of(load_scene(spring_scene(tmp_path, change)))
 
 
 def test_a_file_that_makes_no_sense_and_a_system_that_cannot_be_studied_are_refused_at_their_place(
     tmp_path: Path,
 ) -> None:
-    path = scene_with(tmp_path)
+    path = spring_scene(tmp_path)
     (tmp_path / "spring.csv").write_text("a,b\n1,2\n", "utf-8")
-    with pytest.raises(SceneError, match=r"spring.yaml:3: .*spring.csv: expected a row of a, b and q"):
+    with pytest.raises(SceneError, match=r"scene.yaml:3: .*spring.csv: expected a row of a, b and q"):
         simulation_of(load_scene(path))
     (tmp_path / "spring.csv").write_text("a,b,q\n0,2,3\n", "utf-8")
-    with pytest.raises(SceneError, match=r"spring.yaml:3: .*a spring of a = 0 does not lift"):
+    with pytest.raises(SceneError, match=r"scene.yaml:3: .*a spring of a = 0 does not lift"):
         simulation_of(load_scene(path))
 
 

@@ -15,6 +15,7 @@ from matplotlib.patches import StepPatch
 from places import SCENES
 from printing import printed
 from pydantic import ValidationError
+from scene_texts import written
 from schemas import validate
 
 from tol3d import Run, load_scene
@@ -124,8 +125,7 @@ def test_any_number_of_a_sample_may_be_published_and_stands_in_its_row(tmp_path:
     given = "p0.135: 30 um, p50: 53 um, p99.865: 76 um, ppk: 1.5, below_limit_ppm: 12, skewness: 0.1"
     text = (SCENES / "spur_pair.yaml").read_text("utf-8")
     column = f"published:\n  shop floor:\n    normal backlash: {{{given}}}\n"
-    scene = tmp_path / "scene.yaml"
-    scene.write_text(text[: text.index("published:")] + column, "utf-8")
+    scene = written(text[: text.index("published:")] + column, tmp_path)
     run = run_scene(scene, overrides=Overrides(trials=50, witness=0), out=tmp_path / "run")
     published = run.summary["measures"]["normal backlash"]["published"]["shop floor"]
     assert published == pytest.approx(
@@ -181,9 +181,7 @@ published:
 def with_published(folder: Path, published: str, scene: str = "spur_pair") -> Path:
     """A shipped scene with other columns of others."""
     text = (SCENES / f"{scene}.yaml").read_text("utf-8")
-    path = folder / "scene.yaml"
-    path.write_text(text.partition("\npublished:")[0] + "\n" + published, "utf-8")
-    return path
+    return written(text.partition("\npublished:")[0] + "\n" + published, folder)
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from gear_trials import simulated
 from places import SCENES
+from scene_texts import scene_of
 
-from tol3d import load_scene
 from tol3d.gearing.model import Model, Scalar
 from tol3d.gearing.stack_up import closed_form
 from tol3d.simulate import simulation_of
@@ -116,9 +116,9 @@ def test_an_automatic_study_keeps_what_it_waits_for_in_mm_and_rad_and_as_json(tm
     text = (SCENES / "spur_pair.yaml").read_text(encoding="utf-8")
     old = "study: {trials: 2000, seed: 1, sampler: monte_carlo, engine: exact, witness: 20}"
     until = "{normal backlash: {mean: 0.05 um}, lost motion: {mean: 1 arcsec, sigma: 0.1 mrad}}"
-    path = tmp_path / "scene.yaml"
-    path.write_text(text.replace(old, f"study: {{trials: auto, until: {until}, at_most: 70000}}"), encoding="utf-8")
-    study = simulation_of(load_scene(path)).study
+    study = simulation_of(
+        scene_of(text.replace(old, f"study: {{trials: auto, until: {until}, at_most: 70000}}"), tmp_path)
+    ).study
     assert study.trials == 70_000
     backlash, motion = study.until
     assert (backlash[0], *backlash[2:], motion[0]) == ("normal backlash", None, "lost motion")

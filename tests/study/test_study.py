@@ -98,10 +98,7 @@ ECCENTRIC = {
 
 @pytest.fixture(scope="module")
 def curve_run(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    measures = {
-        "play": {},
-        "curve": {"over": "turn", "take": "curve", "upper_limit": "20 um"},
-    }
+    measures = {"play": {}, "curve": {"over": "turn", "take": "curve", "upper_limit": "20 um"}}
     return run_scene(made(DISTANCE | ECCENTRIC, measures), overrides=FEW, out=tmp_path_factory.mktemp("runs") / "run")
 
 

@@ -55,10 +55,7 @@ def summary_of(folder: Path, *measures: str, study: str = "trials: 100, seed: 3"
 
 
 def test_the_distribution_of_a_train_told_by_its_tip_is_the_turn_that_moves_the_tip(tmp_path: Path) -> None:
-    by_tip, by_turn = (
-        summary_of(tmp_path / "a", TIP),
-        summary_of(tmp_path / "b", LOST),
-    )
+    by_tip, by_turn = (summary_of(tmp_path / "a", TIP), summary_of(tmp_path / "b", LOST))
     train = trains_of(typed_run(by_tip))["t"]
     for method in ("analytic", "geometric"):
         found = distributions_of(train, typed_run(by_tip))[method].high

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from loose_summaries import typed_run
 from places import SCENES, SPUR_PAIR
+from scene_texts import written
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.simulate import load, simulation_of
@@ -203,9 +204,7 @@ def test_what_chords_and_the_allowance_explain_is_not_warned_of() -> None:
 
 
 def scene_of(text: str, folder: Path) -> Path:
-    path = folder / "scene.yaml"
-    path.write_text(text, "utf-8")
-    return path
+    return written(text, folder)
 
 
 @pytest.fixture

@@ -7,8 +7,11 @@ import pytest
 from assembly_trials import assembled
 from numpy.typing import NDArray
 
+from tol3d.statistics.distributions import Uniform
 from tol3d.study.effects.regions import Codes, Drawing, Rows, Space, Standing, builds_in, random_ends, settled
 from tol3d.study.effects.worst_case import Starts, first_starts, joined, worst_case
+from tol3d.study.system.draw import Planar
+from tol3d.study.system.region import region_of
 from tol3d.study.trials.draws import drawn
 
 Array = NDArray[np.float64]
@@ -216,3 +219,15 @@ def test_the_worst_build_of_random_starts_lies_in_its_region(seed: int, plate: t
     assert found.high.value > begun.max()
     assert within(space, found.low.deviations) == []
     assert within(space, found.high.deviations) == []
+
+
+@pytest.mark.parametrize(("low", "high", "shortest"), [(2.0, 10.0, 2.0), (-10.0, -2.0, 2.0), (-4.0, 10.0, 0.0)])
+def test_lengths_of_a_law_lie_between_its_least_and_its_largest_in_any_direction(
+    low: float, high: float, shortest: float
+) -> None:
+    """A negative length points the other way; what lies between is left where it is."""
+    region = region_of(Planar(Uniform(low, high), None), turning=False)
+    points = np.array([[3.0, 4.0], [0.6, 0.8], [30.0, -40.0]])
+    expected = np.array([[3.0, 4.0], max(shortest, 1.0) * np.array([0.6, 0.8]), [6.0, -8.0]])
+    assert region.confined(points) == pytest.approx(expected)
+    assert region.furthest(points)[0] == pytest.approx([6.0, 8.0])

@@ -10,7 +10,6 @@ from typing import Any
 
 import pytest
 from fixtures import Command
-from thinned import thinned
 
 import tol3d
 from tol3d import kinds
@@ -158,7 +157,7 @@ def test_as_it_is_written_it_runs(registered: Broken) -> None:
     assert tol3d.run_scene("block.yaml", out="run").trials == 40
 
 
-@pytest.mark.parametrize("what", thinned(FAULTS, 4))
+@pytest.mark.parametrize("what", FAULTS)
 def test_a_fault_is_the_mechanisms_and_not_the_users(registered: Broken, tol3d: Command, what: str) -> None:
     text, other, words = FAULTS[what]
     registered(text, other)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from places import TESTS
+from scene_texts import Edit, edited, written
 
 import tol3d
 from tol3d import kinds
@@ -34,3 +35,10 @@ def offered(folder: Path, **paths: str) -> Path:
     lines = "".join(f"{name} = {path}\n" for name, path in paths.items())
     (info / "entry_points.txt").write_text(f"[tol3d.mechanisms]\n{lines}", encoding="utf-8")
     return folder
+
+
+def spring_scene(folder: Path, *changes: Edit) -> Path:
+    """The scene of springs with other words, beside its file."""
+    springs = TOYS / "parabola"
+    (folder / "spring.csv").write_text((springs / "spring.csv").read_text("utf-8"), "utf-8")
+    return written(edited((springs / "spring.yaml").read_text("utf-8"), *changes), folder)

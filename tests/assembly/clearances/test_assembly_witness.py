@@ -7,6 +7,7 @@ import pytest
 from assembly_trials import Assembled, assembled
 from fixtures import Command
 from places import SCENES
+from scene_texts import written
 
 from tol3d import Overrides, run_scene
 from tol3d.assembly.model.statuses import OVERLAP
@@ -111,8 +112,7 @@ def test_trials_are_read_as_the_exact_method_reads_them(surfaces: Assembled) -> 
 
 
 def test_a_run_has_what_the_witness_read_and_leaves_out_what_it_cannot(tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(ROUND, "utf-8")
+    path = written(ROUND, tmp_path)
     summary = run_scene(path, out=tmp_path / "run").summary
     assert summary["warnings"] == ["tilt: no tolerance was seen to act on it in 16 builds"]
     found = summary["witness"]
@@ -165,8 +165,7 @@ study: {trials: 100, seed: 1, witness: 30}
 
 @pytest.mark.slow
 def test_a_clearance_is_witnessed_by_meshes_of_half_the_step(tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(PIN, "utf-8")
+    path = written(PIN, tmp_path)
     summary = run_scene(path, out=tmp_path / "run").summary
     own = summary["witness"]["measures"]["cap to base"]
     assert summary["witness"]["chord_error_um"] <= 1.0
@@ -202,6 +201,5 @@ def test_the_engine_is_exact_or_analytic(tol3d: Command) -> None:
 
 
 def test_overrides_of_the_witness_are_kept(tmp_path: Path) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(ROUND, "utf-8")
+    path = written(ROUND, tmp_path)
     assert "witness" not in run_scene(path, overrides=Overrides(witness=0), out=tmp_path / "run").summary

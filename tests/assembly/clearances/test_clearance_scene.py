@@ -10,11 +10,10 @@ from assembly_trials import Assembled, assembled
 from fixtures import Command
 from numpy.typing import NDArray
 from places import SCENES
+from scene_texts import Edit, edited, refusal
 
 from tol3d.assembly.model.statuses import OK, OVERLAP
 from tol3d.assembly.system import AssemblySystem, ClearanceSystem
-from tol3d.errors import InputError, SceneError
-from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.system.stated import stated
 from tol3d.study.trials.draws import drawn
 
@@ -182,12 +181,6 @@ WRONG: dict[str, tuple[tuple[str, str], str]] = {
 }
 
 
-@pytest.mark.parametrize("wrong", WRONG)
-def test_what_is_wrong_is_said(wrong: str, tmp_path: Path) -> None:
-    (old, new), sentence = WRONG[wrong]
-    assert old in BLOCKS
-    path = tmp_path / "scene.yaml"
-    path.write_text(BLOCKS.replace(old, new), "utf-8")
-    with pytest.raises((SceneError, InputError)) as caught:
-        simulation_of(load(path), Overrides())
-    assert sentence in str(caught.value)
+@pytest.mark.parametrize(("edit", "said"), WRONG.values(), ids=WRONG)
+def test_what_is_wrong_is_said(edit: Edit, said: str, tmp_path: Path) -> None:
+    assert said in refusal(edited(BLOCKS, edit), tmp_path)

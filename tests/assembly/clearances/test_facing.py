@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshed import ball, block, tube
+from assembly.clearances.meshed import ball, block, tube
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.faces import SolidMesh

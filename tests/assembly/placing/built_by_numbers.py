@@ -9,17 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from tol3d.assembly.model import (
-    Assembly,
-    Contribution,
-    DatumFrame,
-    Feature,
-    Measured,
-    Move,
-    Pair,
-    Part,
-    Shape,
-)
+from tol3d.assembly.model import Assembly, Contribution, DatumFrame, Feature, Measured, Move, Pair, Part, Shape
 
 Array = NDArray[np.float64]
 Vector = Sequence[float] | Array

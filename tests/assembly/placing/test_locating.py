@@ -4,16 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from assembly.placing.built_by_numbers import (
-    Columns,
-    assembly,
-    feature,
-    frame,
-    moved_as_a_whole,
-    pair,
-    part,
-    posed,
-)
+from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, moved_as_a_whole, pair, part, posed
 from assembly.placing.rigid_search import solved_pose
 from numpy.typing import NDArray
 

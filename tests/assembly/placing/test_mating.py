@@ -29,17 +29,7 @@ from assembly.placing.rigid_search import solved_pose
 from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.measures.gap import GapSpec, PointPlaneSpec
-from tol3d.assembly.model import (
-    Assembly,
-    Axis,
-    Contribution,
-    Fix,
-    Mate,
-    Measured,
-    Move,
-    Point,
-    Relation,
-)
+from tol3d.assembly.model import Assembly, Axis, Contribution, Fix, Mate, Measured, Move, Point, Relation
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
 from tol3d.assembly.placing.method import placed, values
 from tol3d.errors import InputError

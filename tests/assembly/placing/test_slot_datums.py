@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pytest
+from assembly.drafts import Draft, displacement, frame
 from assembly.placing.rigid_search import solved_pose
-from drafts import Draft, displacement, frame
 from numpy.typing import NDArray
 from scipy.linalg import null_space
 from scipy.optimize import linprog

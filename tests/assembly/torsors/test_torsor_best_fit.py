@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from drafts import Draft, Vector, displacement, frame, turned
+from assembly.drafts import Draft, Vector, displacement, frame, turned
 from numpy.typing import NDArray
 from scipy.optimize import linprog, minimize
 from scipy.spatial.transform import Rotation

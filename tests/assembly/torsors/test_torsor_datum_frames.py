@@ -4,23 +4,19 @@ import math
 
 import numpy as np
 import pytest
-from drafts import Draft, displacement, frame
+from assembly.drafts import Draft, coefficients, displacement, frame
 from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.grammar.measures.inspected import InspectedPositionSpec
 from tol3d.assembly.model import Assembly, Axis, Datum, Measured, Plane, RoundPlane
 from tol3d.assembly.model.datum_frame import Simulator
-from tol3d.assembly.torsors.method import slopes, values
+from tol3d.assembly.torsors.method import values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
 
 X, Y, Z = np.eye(3)
-
-
-def coefficients(assembly: Assembly, name: str) -> Array:
-    return slopes(assembly, name, np.zeros(assembly.width), np.ones(assembly.width)).coefficients
 
 
 def test_a_hole_inspected_on_varying_datums_moves_against_them() -> None:

@@ -7,13 +7,13 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from drafts import Draft, Vector, displacement, frame, moved_as_a_whole, turned
+from assembly.drafts import Draft, Vector, coefficients, displacement, frame, moved_as_a_whole, turned
 from numpy.typing import NDArray
-from rigid_parts import RigidParts, directional
+from oracles.rigid_parts import RigidParts, directional
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Move, Pair, Weld
-from tol3d.assembly.torsors.method import slopes, values
+from tol3d.assembly.torsors.method import values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
@@ -48,10 +48,6 @@ def nest(points_on: Side, at: Vector, contacts: Sequence[tuple[Vector, Array]] =
     }
     moves = (Fix("fix", "nest"), Locate("nest move", "block", tuple(pairs), points_on))
     return Nest(draft, draft.assembly(moves, measures), [draft.columns.index(f"locator {k}") for k in range(6)])
-
-
-def coefficients(assembly: Assembly, name: str) -> Array:
-    return slopes(assembly, name, np.zeros(assembly.width), np.ones(assembly.width)).coefficients
 
 
 @pytest.mark.parametrize("points_on", ["part", "fixture"])

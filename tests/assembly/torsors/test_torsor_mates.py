@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from drafts import Draft, Vector, displacement, frame, turned
+from assembly.drafts import Draft, Vector, displacement, frame, turned
 from numpy.typing import NDArray
-from rigid_parts import Poses, RigidParts, directional
+from oracles.rigid_parts import Poses, RigidParts, directional
 
 from tol3d.assembly.grammar.measures.inspected import InspectedSizeSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Mate, Measured, Plane, Relation
@@ -240,10 +240,7 @@ def test_relations_that_take_nothing_or_make_no_sense_are_refused() -> None:
     again = Relation("coincident", "lid.again", "base.again")
     for relations, message in (
         ((face, again), "lay: coincident of lid.again and base.again takes no freedom"),
-        (
-            (Relation("coaxial", "lid.face", "base.axis"),),
-            "coaxial of lid.face and base.axis: not of a plane",
-        ),
+        ((Relation("coaxial", "lid.face", "base.axis"),), "coaxial of lid.face and base.axis: not of a plane"),
         ((Relation("tangent", "lid.axis", "base.face"),), "lay: lid.axis has no diameter; expected one"),
     ):
         moves = (Fix("fix", "base"), Mate("lay", "lid", relations))

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drafts import Draft, displacement, frame, turned
+from assembly.drafts import Draft, displacement, frame, turned
 from numpy.typing import NDArray
-from rigid_parts import Poses, RigidParts, directional
+from oracles.rigid_parts import Poses, RigidParts, directional
 from scipy.optimize import linprog
 
 from tol3d.assembly.grammar.measures.gap import AngleSpec, DistanceSpec, GapSpec, PointPlaneSpec

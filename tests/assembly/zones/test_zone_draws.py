@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from oracles.zone_sets import MOTIONS, REFINED, SETS
 from scipy.integrate import dblquad
 from scipy.stats import chi2, ks_2samp, qmc
-from thinned import thinned
 
 from tol3d.assembly.zones import Confined, Zone, catalogue, normal_in, process_in, uniform_in
 from tol3d.statistics.distributions.normal import Normal
@@ -74,7 +73,7 @@ def seen(points: Array, directions: Array) -> list[Array]:
     return [*points.T, *(points @ directions.T).T, *lengths]
 
 
-@pytest.mark.parametrize(("name", "law", "orientation"), thinned(CASES, 5))
+@pytest.mark.parametrize(("name", "law", "orientation"), CASES)
 def test_draws_have_the_law_that_rejection_has(name: str, law: str, orientation: float | None) -> None:
     assert_same_law(name, law, orientation, 2 * FEW)
 
@@ -125,7 +124,7 @@ def test_all_that_is_drawn_lies_inside_even_from_the_ends_of_uniforms(
         assert zone.inside(points).all()
 
 
-@pytest.mark.parametrize(("name", "law", "orientation"), thinned(CASES, 5))
+@pytest.mark.parametrize(("name", "law", "orientation"), CASES)
 def test_a_trial_has_its_bits_whatever_block_it_is_drawn_in(name: str, law: str, orientation: float | None) -> None:
     draw = LAWS[law](zone_of(name, orientation))
     uniforms = np.random.default_rng(6).random((draw.uniforms, 99))
@@ -165,7 +164,7 @@ def test_zones_of_each_trial_s_own_widths_are_the_zones_of_these_widths(name: st
         assert found[:, k] == pytest.approx(np.concatenate(alone), abs=2e-9 * width)
 
 
-@pytest.mark.parametrize(("name", "law", "orientation"), thinned(CASES, 5))
+@pytest.mark.parametrize(("name", "law", "orientation"), CASES)
 def test_moments_and_ends_are_those_of_the_first_component(name: str, law: str, orientation: float | None) -> None:
     draw = LAWS[law](zone_of(name, orientation))
     own = draw.distribution

@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 import pytest
 from scipy.optimize import differential_evolution
-from thinned import thinned
 
 from tol3d.apps.design.optimum import Goal, Task, best_shifts
 from tol3d.apps.design.shifted_set import Limits, ShiftedSet, made_pair, refuse_interference
@@ -35,7 +34,7 @@ def shifted(teeth: ToothSet, goal: Goal) -> ShiftedSet:
 # teeth ---------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("goal", thinned(Goal, 4))
+@pytest.mark.parametrize("goal", Goal)
 @pytest.mark.parametrize("teeth", SETS)
 def test_designed_teeth_are_those_of_the_gears_that_are_made(teeth: ToothSet, goal: Goal) -> None:
     """No backlash, the same paths of contact and tips, no interference by the gears' own rules."""

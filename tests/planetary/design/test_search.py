@@ -149,10 +149,7 @@ def test_simple_and_compound_sets_are_all_there() -> None:
             "no 3K set is left of 44 with that ratio:\n  assembly: 44 fail; 16/27/70/24/69: 8 identical planets at "
             "equal angles do not assemble between sun and ring 1: 86 is not divisible by 8",
         ),
-        (
-            Wish(SIMPLE, 12.0, planets=4),
-            "adjacency: 6 fail; 12/59/132: gap between the tips of neighbouring planets: ",
-        ),
+        (Wish(SIMPLE, 12.0, planets=4), "adjacency: 6 fail; 12/59/132: gap between the tips of neighbouring planets: "),
         (
             Wish(WOLFROM, 54.72, tolerance=0.0, planets=4, limits=Limits(tip_clearance=0.26), centre_distance=26.0),
             "limits of the teeth: 1 fail; 25/27/79/24/76: no profile shifts were found that keep the limits; the "
@@ -168,10 +165,7 @@ def test_simple_and_compound_sets_are_all_there() -> None:
             "ratio: no 3K set with sun and planets of at least 12 teeth, rings of at most 40 and tooth sums within 2 "
             "has a ratio within 0.005 of 54.72; the nearest, 12/13/39/12/39, has 55.25",
         ),
-        (
-            Wish(SIMPLE, 4.0, teeth=Teeth(40, 60, 2)),
-            "ratio: there is no simple planetary set with sun and planets of",
-        ),
+        (Wish(SIMPLE, 4.0, teeth=Teeth(40, 60, 2)), "ratio: there is no simple planetary set with sun and planets of"),
     ],
 )
 def test_wishes_that_cannot_be_met_say_which_condition_fails(wish: Wish, expected: str) -> None:

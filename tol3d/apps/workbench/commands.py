@@ -3,15 +3,19 @@
 import socket
 import stat
 import tempfile
+import threading
+import time
 import webbrowser
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Final
 
 import typer
 
 from tol3d.cli.arguments import RunBuilders, TrustParts
 from tol3d.cli.console import out_console, warn
 from tol3d.errors import InputError
+
+LOOK_S: Final = 60.0  # s; how often is looked whether anybody is there
 
 
 def app(
@@ -50,8 +54,16 @@ def app(
         with tempfile.TemporaryDirectory(prefix="tol3d-page-") as folder:
             if browser and not webbrowser.open(_opener(Path(folder), address).as_uri()):
                 warn("no browser could be opened: open the address above in one on this computer")
+            serving = uvicorn.Server(config)
+
+            def watch() -> None:
+                while not serving.should_exit:
+                    time.sleep(LOOK_S)
+                    serving.should_exit |= server.is_left
+
+            threading.Thread(target=watch, daemon=True).start()
             try:
-                uvicorn.Server(config).run(sockets=[listening])
+                serving.run(sockets=[listening])
             finally:
                 server.close()
                 lock.release()

@@ -106,6 +106,7 @@ class Questions:
             "measures": measures,
             "tree": tree(session.scene),
             "warnings": [*session.simulation.warnings],
+            "turns": bool(session.simulation.system.streams),
             "compiled": session.simulation.system.is_compiled(session.simulation.study.engine),
         }
 
@@ -166,6 +167,11 @@ class Questions:
             if not 0 <= int(trial) < evaluated.count:
                 raise InputError(f"expected a trial from 0 to {evaluated.count - 1}, got {trial}")
             rows[f"trial {int(trial)}"] = evaluated.trial(int(trial))
+        if (turn := asked.get("turn")) is not None:
+            at = session.positions(min(max(float(turn), 0.0), 1.0))
+            rows = {name: (deviations, at) for name, (deviations, _) in rows.items()} or {
+                "turned": (session.nominal, at)
+            }
 
         def built() -> bytes:
             try:
@@ -185,6 +191,11 @@ class Questions:
         """Jobs of the folder as they stand, the newest first."""
         del asked
         return {"jobs": [_job(own) for own in reversed(self._jobs.list())]}
+
+    @property
+    def is_working(self) -> bool:
+        """True while a job runs or waits for its turn."""
+        return any(own.state in ("running", "waiting") for own in self._jobs.list())
 
     def start(self, asked: Told) -> Told:
         """Run a scene with all its trials, as `tol3d run` does."""

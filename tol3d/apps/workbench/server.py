@@ -32,6 +32,8 @@ ASKED: Final = (
 )
 TICKET_S: Final = 60.0
 """Time for which the address of a report holds [s]; each opens once."""
+LEFT_AFTER_S: Final = 3600.0
+"""Time without a request after which the app ends; open pages ask once a minute, hidden ones too [s]."""
 SANDBOX: Final = "sandbox allow-scripts"
 """Of a report, which may be of a stranger's run: it cannot ask this server for anything."""
 TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
@@ -58,6 +60,7 @@ class Server:
     tickets: dict[str, tuple[float, Path]] = field(default_factory=dict)
     thread: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "live"))
     solids: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "solids"))
+    asked_at: float = field(default_factory=time.monotonic)
     _questions: "Questions | None" = None
 
     @property
@@ -70,7 +73,7 @@ class Server:
 
     async def asked(self, name: str, words: Mapping[str, Any]) -> Response:
         """An answer: data as JSON, bytes as they are, a file as an address at which it opens once."""
-        loop = asyncio.get_running_loop()
+        loop, self.asked_at = asyncio.get_running_loop(), time.monotonic()
         answer: Any = await loop.run_in_executor(self.thread, lambda: getattr(self.questions, name)(words))
         if callable(answer):
             answer = await loop.run_in_executor(self.solids, answer)
@@ -88,6 +91,13 @@ class Server:
         if time.monotonic() > until:
             return PlainTextResponse("expected an address that the app has just made: ask for the report again", 404)
         return HTMLResponse(path.read_bytes(), headers={"content-security-policy": SANDBOX})
+
+    @property
+    def is_left(self) -> bool:
+        """True if no page has asked for an hour, and no job is going on."""
+        if time.monotonic() - self.asked_at < LEFT_AFTER_S:
+            return False
+        return self._questions is None or not self._questions.is_working
 
     def close(self) -> None:
         """Let threads end, and remove what was made for the time that it was open."""

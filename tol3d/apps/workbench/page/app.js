@@ -68,6 +68,8 @@ async function open(name) {
   app.now = found.notes.now;
   app.beside = found.notes.beside;
   $("tree").innerHTML = found.tree;
+  $("turning").hidden = !found.turns;
+  $("turn").value = 0;
   $("measure").replaceChildren(...found.measures.map((own) => new Option(own.name, own.name)));
   const names = found.measures.map((own) => own.name);
   $("measure").value = app.measure = names.includes(found.notes.measure) ? found.notes.measure : names[0];
@@ -381,8 +383,10 @@ $("write").addEventListener("click", async () => {
 
 // what others change ------------------------------------------------------------------------------
 
+let looked = 0;
 setInterval(async () => {
-  if (!app.scene || document.hidden) return;
+  if (!app.scene || (document.hidden && Date.now() - looked < 60000)) return;
+  looked = Date.now();
   try {
     const found = await ask("changed");
     if (found.digest === app.digest) return;
@@ -449,7 +453,10 @@ async function stage() {
   $("stage-words").textContent = "building …";
   try {
     const trial = Number($("trial").value) || 0;
-    const bytes = await ask("view", which === "trial" ? { trial } : { builds: which === "nominal" ? [] : [which] });
+    const turn = Number($("turn").value) / 100;
+    const bytes = await ask("view", {
+      ...(which === "trial" ? { trial } : { builds: which === "nominal" ? [] : [which] }), ...(turn ? { turn } : {}),
+    });
     if (wish !== showing) return;
     const length = new DataView(bytes).getUint32(0), told = JSON.parse(new TextDecoder().decode(bytes.slice(4, 4 + length)));
     const model = bytes.slice(4 + length);
@@ -494,6 +501,10 @@ $("build").addEventListener("change", () => {
   stage();
 });
 $("trial").addEventListener("change", stage);
+$("turn").addEventListener("input", () => {
+  clearTimeout(stage.later);
+  stage.later = setTimeout(stage, 60);
+});
 $("lit").addEventListener("change", light);
 window.addEventListener("tol3d-acting", light);
 window.addEventListener("tol3d-scene", stage);

@@ -6,9 +6,9 @@ Shares no code with what it checks: contacts are asked here as distances of cent
 from dataclasses import dataclass
 
 import numpy as np
-from drafts import Draft, frame, turned
+from assembly.drafts import Draft, frame, turned
 from numpy.typing import NDArray
-from rigid_parts import RigidParts
+from oracles.rigid_parts import RigidParts
 from scipy.linalg import null_space
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation

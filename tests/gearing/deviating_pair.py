@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from oracles.deviated_flanks import DeviatedGear, DeviatedPair, active_rolls, parts
+from scene_texts import scene_of
 
-from tol3d import load_scene
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Mesh, Model, Reading, model_from_scene
 
@@ -51,8 +51,7 @@ SHAPES = "\n".join(
 
 def model_of(folder: Path, tolerances: str, flank: str = "right") -> Model:
     """The model of its scene with tolerances, lines of it, written into a folder."""
-    (folder / "teeth.yaml").write_text(SCENE.format(tolerances=tolerances, flank=flank), "utf-8")
-    return model_from_scene(load_scene(folder / "teeth.yaml"))
+    return model_from_scene(scene_of(SCENE.format(tolerances=tolerances, flank=flank), folder))
 
 
 def draws(model: Model, count: int, seed: int) -> tuple[Array, Array]:

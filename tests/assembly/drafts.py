@@ -8,18 +8,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
-from tol3d.assembly.model import (
-    Assembly,
-    Contribution,
-    Datum,
-    DatumFrame,
-    Feature,
-    Measured,
-    Move,
-    Part,
-    Point,
-    Shape,
-)
+from tol3d.assembly.model import Assembly, Contribution, Datum, DatumFrame, Feature, Measured, Move, Part, Point, Shape
+from tol3d.assembly.torsors.method import slopes
 
 Array = NDArray[np.float64]
 Vector = Sequence[float] | Array
@@ -109,3 +99,8 @@ def moved_as_a_whole(assembly: Assembly, pose: Array) -> Assembly:
 def displacement(name: str, along: Vector, start: str) -> Measured:
     """Displacement of a feature from another along a direction that is fixed in that one's part."""
     return Measured(GapSpec.reads, (start, name), np.asarray(along, float))
+
+
+def coefficients(assembly: Assembly, name: str) -> Array:
+    """Slopes of a measure by the columns of deviations."""
+    return slopes(assembly, name, np.zeros(assembly.width), np.ones(assembly.width)).coefficients
