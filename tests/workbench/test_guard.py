@@ -3,6 +3,11 @@
 import asyncio
 import json
 import shutil
+import signal
+import subprocess
+import sys
+import urllib.error
+import urllib.request
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -311,6 +316,50 @@ def test_a_report_opens_once_in_a_sandbox_and_not_late(tmp_path: Path, monkeypat
         _, late = asked(app, "report", id="0001")
         assert reply(app, "GET", late["address"], [*OPENED.items()]).status == 404
         assert server.tickets == {}
+
+
+@contextmanager
+def started(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str, str]]:
+    """The command in a process, its origin and its token."""
+    command = [sys.executable, "-m", "tol3d.cli", "app", "--no-browser", str(folder)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        assert process.stdout is not None
+        _, _, address = process.stdout.readline().strip().partition(": ")
+        origin, _, token = address.partition("/#")
+        try:
+            yield process, origin, token
+        finally:
+            process.kill()
+
+
+@pytest.mark.slow
+def test_a_server_that_is_killed_loses_no_what_if_and_ends_in_order_when_it_is_asked(tmp_path: Path) -> None:
+    shutil.copy(SPUR_PAIR, tmp_path)
+    words = {"scene": SPUR_PAIR.name, "now": {"centre distance": "x2"}, "measure": "lost motion"}
+
+    def posted(origin: str, token: str, name: str) -> Any:
+        headers = {"x-tol3d-token": token, "content-type": "application/json", "origin": origin}
+        request = urllib.request.Request(f"{origin}/api/{name}", json.dumps(words).encode(), headers)
+        with urllib.request.urlopen(request, timeout=60) as answer:
+            return json.loads(answer.read())
+
+    with started(tmp_path) as (process, origin, token):
+        assert posted(origin, token, "notes") == {}
+        process.kill()
+    with started(tmp_path) as (process, origin, token):
+        for wrong in (("http://localhost:" + origin.rpartition(":")[2], token), (origin, "x" * 43)):
+            with pytest.raises(urllib.error.HTTPError) as error:
+                posted(*wrong, "folder")
+            assert error.value.code in (401, 421)
+            error.value.close()
+        assert posted(origin, token, "folder")["read_only"] == "", "the lock of a killed one is free"
+        assert posted(origin, token, "scene")["notes"] == {"now": words["now"], "beside": [], "measure": "lost motion"}
+        process.send_signal(signal.SIGINT)
+        assert process.wait(60) == 130
+        assert process.stdout is not None
+        assert process.stdout.read() == "Ctrl-C ends it\nstopped\n"
+    assert [*tmp_path.glob("*.yaml")] == [tmp_path / SPUR_PAIR.name]
+    assert (tmp_path / SPUR_PAIR.name).read_bytes() == SPUR_PAIR.read_bytes()
 
 
 # the folder ---------------------------------------------------------------------------------------

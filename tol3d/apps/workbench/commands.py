@@ -38,6 +38,7 @@ def app(
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listening.bind(("127.0.0.1", port))
+            listening.listen()  # a browser that is quicker than the server waits
         except OSError as error:
             raise InputError(f"--port {port}: {error.strerror}; leave it out for one that is free") from None
         own = listening.getsockname()[1]
@@ -70,7 +71,7 @@ def app(
 
 def _opener(folder: Path, address: str) -> Path:
     """A page for the user alone that leads to the app: a browser's command line, which others see, holds no token."""
-    page = folder / "tol3d.html"
+    page = folder / "page.html"
     page.touch(stat.S_IRUSR | stat.S_IWUSR)
     page.write_text(
         f'<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0; url={address}">'

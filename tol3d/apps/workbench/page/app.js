@@ -9,7 +9,7 @@ if (location.hash.length > 1 && !location.hash.startsWith("#/")) {
 }
 
 const app = {
-  scene: "", measure: "", now: {}, beside: [], past: [], digest: "", saved: "", readOnly: false, wish: 0, stopped: false,
+  scene: "", measure: "", now: {}, beside: [], past: [], digest: "", saved: "", readOnly: false, wish: 0, solid: 0, stopped: false,
 };
 
 async function ask(name, told = {}) {
@@ -103,6 +103,7 @@ async function refresh() {
       return;
     }
     if (wish !== app.wish) return;
+    app.solid = wish;
     trouble(null);
     if ($("state").textContent.startsWith("compiling")) $("state").textContent = "";
     $("answer").innerHTML = found.answer;
@@ -129,14 +130,16 @@ async function estimate(now) { // one request under way, the latest wish wins
     return;
   }
   flying = true;
-  app.wish++;
+  const wish = ++app.wish;
   try {
     const found = await ask("estimate", { now });
-    $("chart").innerHTML = found.chart;
-    fields(found.written);
-    trouble(null);
+    if (app.solid < wish) { // nothing newer has come before it
+      $("chart").innerHTML = found.chart;
+      fields(found.written);
+      trouble(null);
+    }
   } catch (error) {
-    trouble(error);
+    if (app.solid < wish) trouble(error);
   }
   flying = false;
   if (waiting) {
@@ -509,6 +512,7 @@ $("turn").addEventListener("input", () => {
 $("lit").addEventListener("change", light);
 window.addEventListener("tol3d-acting", light);
 window.addEventListener("tol3d-scene", stage);
+window.addEventListener("tol3d-card", () => $("build").value !== "nominal" && stage());
 
 // jobs --------------------------------------------------------------------------------------------
 

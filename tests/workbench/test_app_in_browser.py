@@ -1,0 +1,328 @@
+"""The app's page in a headless Chromium: by keyboard, narrow and wide, dark and light, and nothing asked elsewhere."""
+
+import html
+import json
+import re
+import socket
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+import pytest
+import uvicorn
+from browser import Page, browser
+from places import SPUR_PAIR
+
+from tol3d.apps.workbench.place import FolderLock
+from tol3d.apps.workbench.server import Server, application
+from tol3d.apps.workbench.workspace import Workspace
+
+pytestmark = pytest.mark.slow
+
+SCENE, CENTRE, BACKLASH = "pair.yaml", "centre distance", "normal backlash"
+TEXT = SPUR_PAIR.read_text("utf-8").replace("trials: 2000", "trials: 200")
+KEYS = {"ArrowRight": 39, "PageUp": 33, "z": 90, "s": 83, "?": 191, "Escape": 27}
+SLIDER = f'#sliders input[type=range][data-line="{CENTRE}"]'
+FIELD = f'#sliders input[type=text][data-line="{CENTRE}"]'
+SEEN = """window.seen = [];
+new MutationObserver(() => seen.push(document.querySelector("#chart .legend .dashed") !== null)).observe(
+  document.querySelector("#chart"), { childList: true })"""
+"""Notes each picture of the histogram: with an estimate or without; a key moves a slider and releases it at once."""
+WIDER = """["html", "#left", "#middle", "#card"].filter((own) => {
+  const { scrollWidth, clientWidth } = document.querySelector(own);
+  return scrollWidth > (own === "html" ? innerWidth : clientWidth);
+})"""
+"""The page and its columns, as far as they can be scrolled sideways."""
+CONTRAST = """(() => {
+  const canvas = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+  const colour = (text) => (canvas.clearRect(0, 0, 1, 1), canvas.fillStyle = text, canvas.fillRect(0, 0, 1, 1),
+    [...canvas.getImageData(0, 0, 1, 1).data]);
+  const light = (rgb) => rgb.slice(0, 3).map((own) => own / 255)
+    .map((own) => own <= 0.03928 ? own / 12.92 : ((own + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, own, k) => sum + own * [0.2126, 0.7152, 0.0722][k], 0);
+  const behind = (own) => !own ? colour("white") : colour(getComputedStyle(own).backgroundColor)[3] > 250
+    ? colour(getComputedStyle(own).backgroundColor) : behind(own.parentElement);
+  const found = [];
+  for (const own of document.querySelectorAll("body *:not(#stage *):not(.cm-line *):not(option)")) {
+    const text = [...own.childNodes].filter((node) => node.nodeType === 3).map((node) => node.data.trim()).join("");
+    if (!text || !own.checkVisibility() || own.disabled) continue;
+    const style = getComputedStyle(own), svg = own.closest("svg");
+    const [one, two] = [light(colour(svg ? style.fill : style.color)), light(behind(own))].sort((a, b) => b - a);
+    if ((one + 0.05) / (two + 0.05) < 4.5) found.push(`${own.tagName} ${text.slice(0, 30)}`);
+  }
+  return found;
+})()"""
+"""Texts of less than 4.5 to what is behind them; W3C, WCAG 2.2, 1.4.3."""
+
+
+@dataclass(frozen=True)
+class App:
+    """A page of the app, and the server behind it."""
+
+    page: Page
+    server: Server
+    address: str
+    file: Path
+
+    def load(self, width: int = 1400) -> None:
+        """Open the page as it is after a reload, all there, in its scene of the start."""
+        self.file.write_text(TEXT, "utf-8")
+        (self.server.workspace.notes_folder / f"{SCENE}.json").unlink(missing_ok=True)
+        self.page.open("about:blank")
+        self.page.told.clear()
+        self.page.asked.clear()
+        self.page.open(self.address, width)
+        self.shown()
+
+    def shown(self) -> None:
+        """Wait until the page shows all."""
+        self.page.wait(
+            "document.querySelector('#answer table') !== null && document.querySelector('#sliders') !== null"
+        )
+        self.page.wait(
+            "document.querySelector('#sliders .share') !== null && document.querySelector('#tree li') !== null"
+        )
+        self.page.wait("document.querySelector('#stage').dataset.ready === 'yes'")
+        self.page.ask(SEEN)
+
+    def key(self, name: str, *, control: bool = False) -> None:
+        """Press a key."""
+        own = {"key": name, "windowsVirtualKeyCode": KEYS[name], "modifiers": 2 if control else 0}
+        text = {"text": name} if len(name) == 1 and not control else {}
+        self.page.call("Input.dispatchKeyEvent", type="keyDown" if text else "rawKeyDown", **own, **text)
+        self.page.call("Input.dispatchKeyEvent", type="keyUp", **own)
+
+    def focus(self, selector: str) -> None:
+        self.page.ask(f"document.querySelector({json.dumps(selector)}).focus()")
+
+    def click(self, name: str) -> None:
+        """Press a button by its name."""
+        self.page.ask(f"document.querySelector('#{name}').click()")
+
+    def told(self, selector: str, event: str, value: object) -> None:
+        """Give a control a value, as a hand on a mouse does."""
+        change = f"(own.value = {json.dumps(value)}, own.dispatchEvent(new Event('{event}', {{ bubbles: true }})))"
+        self.page.ask(f"(own => {change})(document.querySelector({json.dumps(selector)}))")
+
+    def now(self) -> Any:
+        return self.page.ask("tol3dApp.app.now")
+
+    def card(self, now: Mapping[str, str], measure: str = BACKLASH) -> str:
+        """Words of a card, as the server answers."""
+        asked = {"scene": SCENE, "measure": measure, "now": now}
+        return words(self.server.thread.submit(lambda: self.server.questions.card(asked)).result()["answer"])
+
+    def solid(self, now: Mapping[str, str], measure: str = BACKLASH) -> None:
+        """Wait until the card is that of these tolerances."""
+        wanted = json.dumps(self.card(now, measure))
+        self.page.wait(f"document.querySelector('#answer').textContent.replace(/\\s/g, '') === {wanted}")
+        self.page.wait("document.querySelector('#chart .legend .dashed') === null")
+        assert self.now() == now
+
+
+def words(markup: str) -> str:
+    """Its text without spaces."""
+    return re.sub(r"\s", "", html.unescape(re.sub(r"<[^>]*>", "", markup)))
+
+
+@pytest.fixture(scope="module")
+def app(tmp_path_factory: pytest.TempPathFactory) -> Iterator[App]:
+    folder = tmp_path_factory.mktemp("app")
+    file = folder / SCENE
+    file.write_text(TEXT, "utf-8")
+    (folder / "other.yaml").write_text(TEXT, "utf-8")
+    with socket.create_server(("127.0.0.1", 0)) as listening, FolderLock(folder) as lock, browser() as page:
+        own = Server(Workspace.of(file), lock)
+        guarded = application(own, listening.getsockname()[1])
+        server = uvicorn.Server(
+            uvicorn.Config(guarded, log_level="warning", access_log=False, lifespan="off", ws="none")
+        )
+        thread = Thread(target=server.run, kwargs={"sockets": [listening]})
+        thread.start()
+        try:
+            yield App(page, own, f"{guarded.origin}/#{guarded.token}", file)
+        finally:
+            server.should_exit = True
+            thread.join()
+            own.close()
+
+
+def test_the_page_is_there_says_nothing_and_asks_nobody_else(app: App) -> None:
+    app.load()
+    app.solid({})
+    assert app.page.ask("location.href") == f"{app.address.partition('#')[0]}#/scene/{SCENE}"
+    assert app.page.told == []
+    origin = app.address.partition("#")[0]
+    assert {url for url in app.page.asked if not url.startswith(origin)} <= {"about:blank", "data:,"}
+    assert app.page.ask("document.querySelector('#trouble').hidden")
+    picture = app.page.picture("#stage canvas")
+    lively = picture.max(axis=-1) - picture.min(axis=-1) > 60
+    assert lively.mean() > 0.05, "the pair is drawn"
+
+
+def test_the_first_story_by_keyboard_alone(app: App) -> None:
+    app.load()
+    app.focus(SLIDER)
+    app.key("ArrowRight")
+    wider = {CENTRE: "x1.014"}
+    app.solid(wider)
+    assert not app.page.ask("seen.at(-1)"), "an estimate is not drawn over what is simulated"
+    assert app.page.ask(f"document.querySelector({json.dumps(FIELD)}).value") == "±20.28 um"
+    assert app.page.ask("document.activeElement.dataset.line") == CENTRE
+    app.key("PageUp")
+    app.solid({CENTRE: "x1.338"})  # 4 ** 0.21, a tenth of the range further
+    app.key("z", control=True)
+    app.solid(wider)
+    app.key("z", control=True)
+    app.solid({})
+    app.focus(FIELD)
+    app.page.ask("document.activeElement.select()")
+    app.page.call("Input.insertText", text="±33 um")
+    app.page.ask("document.activeElement.blur()")
+    app.solid({CENTRE: "±33 um"})
+    app.key("s", control=True)
+    app.page.wait("document.querySelector('#diff').open")
+    diff = app.page.ask("document.querySelector('#diff pre').textContent").splitlines()
+    assert [line for line in diff if re.match(r"[-+] ", line)] == [
+        "-    distribution: {kind: normal, lower: -20 um, upper: 20 um}",
+        "+    distribution: {kind: normal, lower: -33 um, upper: 33 um}",
+    ]
+    assert app.file.read_text("utf-8") == TEXT
+    app.click("write")
+    app.page.wait("!document.querySelector('#diff').open && document.querySelector('#keep').disabled")
+    app.solid({})
+    assert app.file.read_text("utf-8") == TEXT.replace("-20 um, upper: 20 um", "-33 um, upper: 33 um")
+    app.focus("#left input")
+    app.page.ask("document.activeElement.blur()")
+    app.key("?")
+    app.page.wait("document.querySelector('#help').open")
+    app.key("Escape")
+    app.page.wait("!document.querySelector('#help').open")
+    assert app.page.told == []
+
+
+def test_a_slider_on_its_way_shows_an_estimate_until_it_is_released(app: App) -> None:
+    app.load()
+    before = app.page.ask("document.querySelector('#answer').textContent")
+    app.told(SLIDER, "input", 40)
+    app.page.wait("document.querySelector('#chart .legend .dashed') !== null")
+    assert app.page.ask("document.querySelector('#answer').textContent") == before
+    assert app.now() == {}
+    app.told(SLIDER, "change", 40)
+    app.solid({CENTRE: "x1.741"})
+
+
+def test_the_worst_build_in_3d_is_that_of_the_tolerances_that_are_tried(app: App) -> None:
+    app.load()
+    gap = "[...document.querySelectorAll('.names span')].map(own => own.textContent).find(own => own.startsWith('gap'))"
+    for now in ({}, {CENTRE: "x1.741"}):
+        if now:
+            app.told(SLIDER, "change", 40)
+        else:
+            app.told("#build", "change", "worst")
+        app.solid(now)
+        session = app.server.questions.session(SCENE)
+        low = session.evaluated(BACKLASH, now).good.min()
+        app.page.wait(f"({gap} ?? '').startsWith('gap {low:.3f}')")
+    app.told("#build", "change", "nominal")
+
+
+def test_reset_aside_and_a_reload(app: App) -> None:
+    app.load()
+    wider, other = {CENTRE: "x1.014"}, "lost motion"
+    app.focus(SLIDER)
+    app.key("ArrowRight")
+    app.solid(wider)
+    app.click("aside")
+    app.page.wait("document.querySelectorAll('#beside article').length === 1")
+    app.click("reset")
+    app.solid({})
+    app.click("undo")
+    app.solid(wider)
+    app.page.ask(
+        f"(own => (own.value = {other!r}, own.dispatchEvent(new Event('change'))))(document.querySelector('#measure'))"
+    )
+    app.solid(wider, other)
+    for reload in (lambda: app.page.call("Page.reload"), lambda: app.page.open(app.address.partition("#")[0])):
+        app.page.ask("window.old = true")
+        reload()
+        app.page.wait("window.old === undefined && document.readyState === 'complete'")
+        app.shown()
+        app.solid(wider, other)
+        app.page.wait("document.querySelectorAll('#beside article').length === 1")
+    app.page.ask("document.querySelectorAll('#beside button')[1].click()")
+    app.page.wait("document.querySelectorAll('#beside article').length === 0")
+    assert app.page.told == []
+
+
+def test_a_wrong_word_is_marked_at_its_line_and_in_the_tree(app: App) -> None:
+    app.load()
+    line = 1 + TEXT[: TEXT.index("of: gear pair")].count("\n")
+    app.focus("#editor .cm-content")
+    app.page.ask(f"tol3dApp.editor.go({line})")
+    app.page.call("Input.insertText", text="    of: gear par")
+    app.page.wait("document.querySelector('#problems .error') !== null")
+    assert "gear par" in app.page.ask("document.querySelector('#problems').textContent")
+    assert app.page.ask("[...document.querySelectorAll('#tree .wrong')].map(own => own.dataset.name)") == [CENTRE]
+    mark = "(own => own && own.getBoundingClientRect().y)(document.querySelector('#editor .cm-lint-marker-error'))"
+    number = (
+        f"[...document.querySelectorAll('.cm-lineNumbers .cm-gutterElement')].find(own => own.textContent === '{line}')"
+    )
+    app.page.wait(f"{mark} !== null")
+    assert app.page.ask(f"Math.abs({mark} - {number}.getBoundingClientRect().y) < 8")
+    assert app.file.read_text("utf-8") == TEXT, "nothing is written while one types"
+    app.page.ask(f"tol3dApp.editor.go({line})")
+    app.page.call("Input.insertText", text="    of: gear pair")
+    app.page.wait("document.querySelector('#problems .error') === null")
+    assert app.page.ask("document.querySelector('#tree .wrong')") is None
+    assert app.page.told == []
+
+
+def test_words_that_a_tolerance_cannot_have_are_refused_at_their_field(app: App) -> None:
+    app.load()
+    app.focus(FIELD)
+    app.page.ask("document.activeElement.select()")
+    app.page.call("Input.insertText", text="±3 kg")
+    app.page.ask("document.activeElement.blur()")
+    app.page.wait("document.querySelector('#sliders .wrong') !== null")
+    assert "expected a length with its unit" in app.page.ask("document.querySelector('#sliders .wrong').textContent")
+    app.solid({})
+
+
+def test_what_another_program_writes_is_shown(app: App) -> None:
+    app.load()
+    app.file.write_text(TEXT.replace("scene: spur pair", "scene: another pair"), "utf-8")
+    app.page.wait("document.querySelector('#title').textContent === 'another pair at the drive end'")
+
+
+def test_no_sideways_scroll_and_no_faint_text_at_any_width(app: App) -> None:
+    app.load()
+    app.focus(SLIDER)
+    app.key("ArrowRight")
+    app.click("aside")
+    for width in (1400, 800, 390, 320):
+        size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+        app.page.call("Emulation.setDeviceMetricsOverride", **size)
+        for scheme in ("light", "dark"):
+            feature = {"name": "prefers-color-scheme", "value": scheme}
+            app.page.call("Emulation.setEmulatedMedia", features=[feature])
+            assert app.page.ask(WIDER) == [], (width, scheme)
+            assert app.page.ask(CONTRAST) == [], (width, scheme)
+
+
+def test_every_control_has_a_name(app: App) -> None:
+    app.load()
+    controls = {"button", "combobox", "slider", "textbox", "checkbox", "spinbutton", "searchbox", "ComboBoxMenuList"}
+    nodes = [own for own in app.page.call("Accessibility.getFullAXTree")["nodes"] if not own["ignored"]]
+    found = [(own["role"]["value"], own.get("name", {}).get("value", "")) for own in nodes if "role" in own]
+    named = [own for own in found if own[0] in controls]
+    assert len(named) > 40
+    assert [own for own in named if not own[1].strip()] == []
+    assert ("slider", f"{CENTRE}: how wide") in named
+    assert (
+        app.page.ask("document.querySelectorAll('[onclick], :is(div, span):not(.cm-scroller)[tabindex]').length") == 0
+    )
+    every = app.page.ask("[...document.querySelectorAll('[id]')].map(own => own.id)")
+    assert len({*every}) == len(every)
