@@ -138,7 +138,7 @@ def test_a_bolt_goes_through_the_hole_at_its_smallest_less_its_largest_position(
     limits: tuple[float, float] | None, positions: tuple[float, ...], expected: float
 ) -> None:
     """A hole drawn at 9 mm with other limits: 8.9 less 0.3 mm; limits above 9 mm are not believed; a tenth without."""
-    hole = FoundFeature((4,), "cylinder", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), radius=4.5)
+    hole = FoundFeature((4,), "hole", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), radius=4.5)
     ends = {"features": [hole], "kind": ("diameter",), "limits": limits}
     other = ends | {"features": [replace(hole, faces=(5,))], "limits": (1.0, 2.0)}
     zones = [

@@ -543,7 +543,11 @@ async function report(id) {
     for (;;) {
       const found = await ask("report", { id });
       if (found.address) {
-        window.open(found.address, "_blank", "noopener");
+        const link = document.createElement("a");
+        Object.assign(link, { href: found.address, target: "_blank", rel: "noopener", textContent: "open the report" });
+        link.addEventListener("click", () => link.remove()); // the address opens once
+        $("job").append(" ", link);
+        link.focus();
         return;
       }
       if (["failed", "cancelled", "interrupted"].includes(found.state)) throw new Error(found.message || `the report was ${found.state}`);
