@@ -190,11 +190,15 @@ class Session:
         Raises:
             InputError: no such tolerance, or no such value of it.
         """
-        found = list[Change]()
-        for line, words in now.items():
-            of = factor_of if words.startswith("x") else change_of
-            found.append(of(self.response, f"{line}={words.removeprefix('x')}"))
-        return found
+        return [self._change(line, words) for line, words in now.items()]
+
+    def _change(self, line: str, words: str) -> Change:
+        of, option = (factor_of, "--factor") if words.startswith("x") else (change_of, "--set")
+        text = f"{line}={words.removeprefix('x')}"
+        try:
+            return of(self.response, text)
+        except InputError as error:  # the page has no options
+            raise InputError(str(error).removeprefix(f"{option} {text!r}: ").removeprefix(f"{option}: ")) from None
 
     def changed(self, now: WhatIf) -> Response:
         """The response with other tolerances.
