@@ -106,8 +106,7 @@ def test_the_scenes_use_every_field_of_every_kind(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("text", DRAWINGS, ids=lambda text: text.splitlines()[0])
 def test_every_scene_of_the_page_of_drawings_runs_and_holds_its_limits(text: str, tmp_path: Path) -> None:
-    drawn(text, tmp_path)
-    found = run_scene(tmp_path / "drawing.yaml", overrides=Overrides(trials=300), out=tmp_path / "run").summary
+    found = run_scene(drawn(text, tmp_path), overrides=Overrides(trials=300), out=tmp_path / "run").summary
     assert {own["geometric"]["above_limit_ppm"] for own in found["measures"].values()} == {0.0}
 
 
