@@ -322,7 +322,10 @@ def test_a_report_opens_once_in_a_sandbox_and_not_late(tmp_path: Path, monkeypat
 def started(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str, str]]:
     """The command in a process, its origin and its token."""
     command = [sys.executable, "-m", "tol3d.cli", "app", "--no-browser", str(folder)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's `&` has it ignored
+    ) as process:  # fmt: skip
         assert process.stdout is not None
         _, _, address = process.stdout.readline().strip().partition(": ")
         origin, _, token = address.partition("/#")
