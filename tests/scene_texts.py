@@ -33,7 +33,7 @@ def scene_of(text: str, folder: Path) -> Scene:
 
 
 def refusal_at(text: str, folder: Path) -> str:
-    """What a scene is refused with, as it is read or made a simulation: `line: place: words`, a line for each fault."""
+    """Refusal of a scene, as it is read or made a simulation: `line: place: words`, a line for each fault."""
     path = written(text, folder)
     with pytest.raises(InputError) as caught:
         simulation_of(load(path), Overrides())

@@ -122,7 +122,7 @@ PROJECTED = """Object.fromEntries([...document.querySelectorAll('.names span')].
   const at = own.place.clone().project(view.camera);
   return [own.textContent, [(at.x + 1) * 400, (1 - at.y) * 300]];
 }))"""
-"""Where in the stage the names stand, by what is written there."""
+"""Places of names in the stage, by what is written there."""
 
 
 @contextmanager

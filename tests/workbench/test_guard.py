@@ -36,13 +36,13 @@ OURS = {
 }
 """Headers of the page's own question."""
 OPENED = {"host": HOST, "sec-fetch-site": "none", "sec-fetch-dest": "document"}
-"""Of an address that the user opened."""
+"""Headers of an address that the user opened."""
 EVIL = "<img src=x onerror=alert(1)>"
 
 
 @dataclass(frozen=True)
 class Reply:
-    """What came back; the status of a websocket is None."""
+    """The answer; the status of a websocket is None."""
 
     status: int | None
     headers: list[tuple[str, str]]
@@ -188,7 +188,7 @@ def test_only_the_page_its_files_and_its_questions_are_there(
 
 
 def _strict(found: Reply) -> None:
-    """What every answer says to the browser that shows it."""
+    """Headers of every answer, for the browser that shows it."""
     names = [key for key, _ in found.headers]
     assert len({*names}) == len(names)
     told = dict(found.headers)

@@ -15,7 +15,7 @@ from tol3d.study.system import Trials, nominal_build
 
 NOMINAL: Final = "nominal"
 FACTORS: Final = (1.0, 10.0, 100.0)
-"""Of deviations; a build shows those that it allows."""
+"""Magnifications of deviations; a build shows those that it allows."""
 
 
 def build_view(

@@ -22,6 +22,7 @@ from tol3d.report.html.frame import NARROW
 from tol3d.report.html.svg import svg
 from tol3d.report.measure_charts import out_text, spanned
 from tol3d.report.number import bounded_share_text, limit_text, limits_text, measured_text, percent_text
+from tol3d.report.shown_unit import LONG_UM
 from tol3d.statistics.distributions import Distribution
 from tol3d.study.runs.summary.measure import MeasureSummary
 from tol3d.study.runs.summary.sample import Sample
@@ -30,7 +31,6 @@ from tol3d.study.system.draw import Draw
 from tol3d.study.system.other_laws import Zoned
 
 BINS: Final = 40
-LONG: Final = 1000.0 + 1e-6  # um; longer lengths are shown in mm, as reports do
 STEPS: Final = 100
 """Steps of a slider to either side of the scene's tolerance."""
 WIDEST: Final = 4.0
@@ -51,7 +51,7 @@ class Shown:
     def of(cls, evaluated: Evaluated) -> "Shown":
         """Millimetres of a length over one, as in reports."""
         measure, mean = evaluated.measure, evaluated.sample.mean
-        if measure.unit == "um" and mean is not None and abs(mean) > LONG:
+        if measure.unit == "um" and mean is not None and abs(mean) > LONG_UM:
             return cls("mm", 1e-3)
         return cls(measure.unit)
 
@@ -254,7 +254,7 @@ def _ends(scope: Scope) -> tuple[int, int] | None:
 
 
 def written_words(session: Session, now: WhatIf) -> Mapping[str, str]:
-    """What is moved as its field shows it, by line."""
+    """Moved tolerances as their fields show them, by line."""
     response, found = session.changed(now), dict[str, str]()
     known = {own.name: own for own in response.contributors}
     for line in now:

@@ -108,7 +108,7 @@ class TooLargeError(Exception):
 
 
 def _limited(receive: Receive) -> Receive:
-    """What is received, up to the largest body, whatever its header says."""
+    """Receive up to the largest body, whatever its header says."""
     got = 0
 
     async def limited() -> Message:

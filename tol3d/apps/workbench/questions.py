@@ -42,7 +42,7 @@ class StaleError(InputError):
 
 @dataclass(eq=False)
 class Questions:
-    """What the app has open.
+    """Scenes that the app has open, and its answers on them.
 
     Args:
         workspace: the folder.
@@ -225,13 +225,13 @@ class Questions:
         return {}
 
     def check(self, asked: Told) -> Told:
-        """What `tol3d check` says of a text that is not written yet."""
+        """Messages of `tol3d check` on a text that is not written yet."""
         path = self.workspace.scene(str(asked["scene"]))
         _, problems, warnings = checked(str(asked["text"]), path)
         return {"problems": [*problems], "warnings": [*warnings]}
 
     def keep(self, asked: Told) -> Told:
-        """What is moved as a change of the scene's text: the difference, or that written."""
+        """Keep moved tolerances in the scene's text: the difference first, then the file."""
         session, _, now = self._asked(asked)
         text = scene_with(session.response, session.scene, session.changes(now)).text
         before = session.content.decode("utf-8")

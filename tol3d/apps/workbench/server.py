@@ -35,7 +35,7 @@ TICKET_S: Final = 60.0
 LEFT_AFTER_S: Final = 3600.0
 """Time without a request after which the app ends; open pages ask once a minute, hidden ones too [s]."""
 SANDBOX: Final = "sandbox allow-scripts"
-"""Of a report, which may be of a stranger's run: it cannot ask this server for anything."""
+"""Policy of a report, which may be of a stranger's run: it cannot ask this server for anything."""
 TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
 PAGE: Final = "tol3d.apps.workbench.page"
 REPORT: Final = "tol3d.report.html"
@@ -65,7 +65,7 @@ class Server:
 
     @property
     def questions(self) -> "Questions":
-        """What answers; only its own thread asks."""
+        """The one that answers; only its own thread asks."""
         if self._questions is None:
             made = import_module(QUESTIONS).Questions
             self._questions = made(self.workspace, self.lock, self.trust_parts, self.run_builders)

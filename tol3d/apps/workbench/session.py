@@ -73,7 +73,7 @@ class Evaluated:
 
     @property
     def values(self) -> Values:
-        """Of the builds that are done."""
+        """Values of the builds that are done."""
         texts = self.response.simulation.system.statuses.texts
         return Values(self._values[: self.done], self._codes[: self.done], texts)
 
@@ -185,7 +185,7 @@ class Session:
         return self._kept
 
     def changes(self, now: WhatIf) -> list[Change]:
-        """What was moved by hand.
+        """Changes that were made by hand.
 
         Raises:
             InputError: no such tolerance, or no such value of it.

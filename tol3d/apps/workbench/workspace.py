@@ -27,7 +27,7 @@ WhatIf = Mapping[str, str]
 
 @dataclass(frozen=True)
 class Notes:
-    """What was moved in a scene and is not kept in its file.
+    """Moved tolerances of a scene that are not kept in its file.
 
     Args:
         now: changes that are being tried.
@@ -103,7 +103,7 @@ class Workspace:
         return known[name]
 
     def notes(self, scene: str) -> Notes:
-        """What was moved in a scene; nothing where that was written by another version, or is damaged."""
+        """Moved tolerances of a scene; none where they were written by another version, or are damaged."""
         try:
             told = json.loads((self.notes_folder / f"{scene}.json").read_text("utf-8"))
             if told["version"] != VERSION:
