@@ -66,6 +66,8 @@ class Workspace:
                     f"{place}: expected a scene or a folder with scenes, got one without {SUFFIXES[0]} files"
                 )
             return found
+        if not place.exists():
+            raise InputError(f"{place}: expected a scene or a folder of scenes, found nothing of that name")
         if not place.is_file() or place.suffix not in SUFFIXES:
             raise InputError(f"{place}: expected a scene ({SUFFIXES[0]}) or a folder of scenes")
         return cls(place.resolve().parent, place.name)
