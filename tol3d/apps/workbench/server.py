@@ -39,7 +39,8 @@ SANDBOX: Final = "sandbox allow-scripts"
 TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
 PAGE: Final = "tol3d.apps.workbench.page"
 REPORT: Final = "tol3d.report.html"
-FILES: Final = {"app.js": PAGE, "app.css": PAGE, "editor.js": PAGE, "style.css": REPORT, "viewer.js": REPORT}
+SCRIPTS: Final = ("app.js", "ask.js", "card.js", "editor.js", "jobs.js", "sliders.js", "stage.js", "text.js")
+FILES: Final = {**dict.fromkeys((*SCRIPTS, "app.css"), PAGE), "style.css": REPORT, "viewer.js": REPORT}
 STALE: Final = 409
 
 

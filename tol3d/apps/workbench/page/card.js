@@ -1,0 +1,115 @@
+// The card: verdict and distribution of the chosen measure, and what-ifs beside each other.
+import { $, app, ask, button, trouble } from "./ask.js";
+import { show } from "./app.js";
+import { note } from "./sliders.js";
+
+export async function refresh() {
+  const wish = ++app.wish;
+  app.stopped = false;
+  $("reset").disabled = !Object.keys(app.now).length;
+  $("aside").disabled = $("reset").disabled || app.beside.length >= 3;
+  $("keep").disabled = $("reset").disabled || app.readOnly;
+  $("undo").disabled = !app.past.length;
+  changesTold();
+  for (;;) {
+    let found;
+    try {
+      found = await ask("card");
+    } catch (error) {
+      if (wish === app.wish) trouble(error);
+      return;
+    }
+    if (wish !== app.wish) return;
+    app.solid = wish;
+    trouble(null);
+    if ($("state").textContent.startsWith("compiling")) $("state").textContent = "";
+    $("answer").innerHTML = found.answer;
+    $("chart").innerHTML = found.chart;
+    fields(found.written);
+    const going = found.done < found.of && !app.stopped;
+    $("progress").hidden = !going;
+    if (!going) break;
+    $("progress").querySelector("progress").value = found.done / found.of;
+    $("progress").querySelector("span").textContent = `${found.done} of ${found.of} trials, ${found.left} s left`;
+  }
+  window.dispatchEvent(new CustomEvent("tol3d-card"));
+}
+
+function changesTold() {
+  const count = Object.keys(app.now).length;
+  if (!$("state").textContent.endsWith("…")) $("state").textContent = count ? `${count} change${count > 1 ? "s" : ""} not kept` : "";
+}
+
+let flying = false, waiting = null;
+export async function estimate(now) { // one request under way, the latest wish wins
+  if (flying) {
+    waiting = now;
+    return;
+  }
+  flying = true;
+  const wish = ++app.wish;
+  try {
+    const found = await ask("estimate", { now });
+    if (app.solid < wish) { // nothing newer has come before it
+      $("chart").innerHTML = found.chart;
+      fields(found.written);
+      trouble(null);
+    }
+  } catch (error) {
+    if (app.solid < wish) trouble(error);
+  }
+  flying = false;
+  if (waiting) {
+    const next = waiting;
+    waiting = null;
+    await estimate(next);
+  }
+}
+
+export function forget() { // what waits to be estimated
+  waiting = null;
+}
+
+function fields(written) {
+  for (const [line, words] of Object.entries(written ?? {})) {
+    const field = [...document.querySelectorAll("#sliders input[type=text]")].find((own) => own.dataset.line === line);
+    if (field && field !== document.activeElement) field.value = words;
+  }
+}
+
+// what-ifs beside each other ----------------------------------------------------------------------
+
+export async function aside() {
+  const wish = app.wish, found = [];
+  for (const [k, own] of app.beside.entries()) {
+    let card;
+    try {
+      card = await ask("card", { now: own });
+    } catch (error) {
+      card = { answer: error.message };
+    }
+    const article = document.createElement("article");
+    article.innerHTML = card.answer;
+    const words = document.createElement("p");
+    words.className = "dim";
+    words.textContent = Object.entries(own).map(([line, text]) => `${line} ${text.replace(/^x/, "× ")}`).join(", ");
+    const back = button("take", () => takeBack(k)), drop = button("drop", () => dropOne(k));
+    article.append(words, back, " ", drop);
+    found.push(article);
+  }
+  if (wish === app.wish || !found.length) $("beside").replaceChildren(...found);
+}
+
+async function takeBack(k) {
+  app.past.push(app.now);
+  app.now = app.beside[k];
+  note();
+  await show();
+}
+
+async function dropOne(k) {
+  app.beside.splice(k, 1);
+  note();
+  $("aside").disabled = !Object.keys(app.now).length;
+  await aside();
+}

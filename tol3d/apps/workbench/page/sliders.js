@@ -1,0 +1,91 @@
+// A slider and a field for each tolerance that acts on the chosen measure.
+import { $, app, ask, trouble } from "./ask.js";
+import { show } from "./app.js";
+import { estimate, forget, refresh } from "./card.js";
+
+const WIDEST = 4, STEPS = 100; // factor at a slider's end, and its steps
+
+export async function slide() {
+  const [scene, measure] = [app.scene, app.measure];
+  let found;
+  try {
+    found = await ask("sliders");
+  } catch (error) {
+    trouble(error);
+    return;
+  }
+  if (scene !== app.scene || measure !== app.measure) return;
+  const focus = document.activeElement?.closest?.("#sliders") ? document.activeElement : null;
+  const [line, type] = [focus?.dataset.line, focus?.type];
+  $("sliders").innerHTML = found.sliders;
+  if (line) [...document.querySelectorAll("#sliders input")].find((own) => own.dataset.line === line && own.type === type)?.focus();
+  app.acting = found;
+  lit();
+  if (found.waits) setTimeout(() => scene === app.scene && measure === app.measure && slide(), 500);
+}
+
+function lit() {
+  const entries = new Set(app.acting?.entries ?? []), parts = new Set(app.acting?.parts ?? []);
+  for (const own of document.querySelectorAll("#tree button")) {
+    const { section, name } = own.dataset;
+    own.classList.toggle("acts", (section === "tolerances" && entries.has(name)) || (section === "measures" && name === app.measure)
+      || (section === "parts" && parts.has(name)));
+  }
+  window.dispatchEvent(new CustomEvent("tol3d-acting", { detail: app.acting }));
+}
+
+function moved(line, words) {
+  const now = { ...app.now };
+  if (words === null) delete now[line];
+  else now[line] = words;
+  return now;
+}
+
+function factorWords(step) {
+  return step === 0 ? null : `x${Number((WIDEST ** (step / STEPS)).toPrecision(4))}`;
+}
+
+export async function take(now) {
+  app.past.push(app.now);
+  app.now = now;
+  note();
+  for (const own of document.querySelectorAll("#sliders li")) own.classList.toggle("moved", own.dataset.line in now);
+  await refresh();
+}
+
+export function note() {
+  ask("notes", { beside: app.beside }).catch(trouble);
+}
+
+$("sliders").addEventListener("input", (event) => {
+  const { type, dataset, value } = event.target;
+  if (type === "range") estimate(moved(dataset.line, factorWords(Number(value))));
+});
+$("sliders").addEventListener("change", async (event) => {
+  const own = event.target, { line } = own.dataset;
+  own.closest("li").querySelector(".wrong")?.remove();
+  if (own.type === "range") {
+    forget();
+    await take(moved(line, factorWords(Number(own.value))));
+    return;
+  }
+  const now = moved(line, own.value.trim() || null);
+  try {
+    await ask("estimate", { now });
+  } catch (error) {
+    const words = document.createElement("p");
+    words.className = "wrong";
+    words.textContent = error.message;
+    own.closest("li").append(words);
+    return;
+  }
+  await take(now);
+  await slide();
+});
+
+export async function undo() {
+  if (!app.past.length) return;
+  app.now = app.past.pop();
+  note();
+  await show();
+}
