@@ -156,7 +156,8 @@ def test_changed_limits_are_written_as_limits(tmp_path: Path) -> None:
     [
         ("±0.1", "expected a unit in it, such as ±0.1 mm, got '±0.1'"),
         ("±0.1 furlong", "unknown unit 'furlong'"),
-        ("cd25", "the tables of DIN 3967 are not in tol3d"),
+        ("cd25", "expected {din_3967: cd25}, got cd25"),
+        ("{din_3964: 7}", "distribution.din_3964"),
         ("±0.1 K", "expected a length with its unit"),
         ("+0.1/+0.1 mm", "expected two different limits"),
         ("[1 um]", "expected a lower and an upper limit, such as [-30 um, -19 um], got 1 values"),

@@ -19,7 +19,7 @@ from tol3d.study.system.draw import Draw
 from tol3d.study.system.other_laws import Zoned, naturally_stays, scaled
 from tol3d.study.trials.simulation import Line
 
-CLASSES: Final = ("fit", "general", "iso_1328_2", "iso_class", "grade")
+CLASSES: Final = ("fit", "general", "iso_1328_2", "din_3967", "din_3964", "iso_class", "grade")
 """Keys by which a scene states limits of a standard."""
 SAME: Final = 1e-9
 """Share of a tolerance by which limits may differ that are the same: ten digits are written."""

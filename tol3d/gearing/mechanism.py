@@ -35,7 +35,8 @@ def _kinds(base: type[Entry], place: ModuleType = grammar) -> tuple[type[Any], .
 SINGLE: Final = "write pitch_deviation with limits: {single: …, cumulative: …} or {iso_class: …}"
 RUN_OUT: Final = "write tooth_run_out: the run-out of teeth; run_out is of a shaft"
 COMPOSITE: Final = "write tooth_run_out of F_i'' - f_i'', and beside it tooth_to_tooth with limits: {size: f_i''}"
-DISTANCE: Final = "write centre_distance, with {fit: js7, of: …} for DIN 3964"
+DISTANCE: Final = "write centre_distance, with {din_3964: js7}"
+THICKNESS: Final = "write tooth_thickness, with {din_3967: cd25} or its allowances"
 SPAN, PINS = (f"write tooth_thickness with measured: {{{word}: …}}" for word in ("span", "pins"))
 BACKLASH: Final = "write normal_backlash, circumferential_backlash, angular_backlash or, of a train, lost_motion"
 ANY_GEAR: Final = "write spur_gear, bevel_gear or, of a ring, internal_gear"
@@ -45,6 +46,7 @@ OTHER_KINDS: Final = (
     *((word, RUN_OUT) for word in ("F_r", "Fr", "gear_run_out", "radial_run_out")),
     *((word, COMPOSITE) for word in ("F_i''", "F_i″", "Fi''", "radial_composite", "radial_composite_deviation")),
     *((word, "write tooth_to_tooth with limits: {size: …}") for word in ("f_i''", "f_i″", "fi''")),
+    *((word, THICKNESS) for word in ("E_sn", "E_s", "A_s", "A_sn", "A_sne")),
     *((word, DISTANCE) for word in ("f_a", "A_a", "centre_distance_class")),
     *((word, SPAN) for word in ("W_k", "base_tangent_length", "span")),
     *((word, PINS) for word in ("M_dK", "over_pins", "over_balls")),

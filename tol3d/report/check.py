@@ -14,6 +14,7 @@ from tol3d.report.system_check import law_name
 from tol3d.scene.bases import laws_in
 from tol3d.scene.schema import Scene
 from tol3d.statistics.distributions.base import DistributionSpec
+from tol3d.statistics.distributions.unsized import STANDARDS
 from tol3d.statistics.standards import iso_2768
 from tol3d.study.runs.summary.shows import Shows
 from tol3d.study.system.faults import faults_of
@@ -133,6 +134,9 @@ def _told(written: Any) -> str:
     if isinstance(written, dict):
         if "limits" in written:
             return _told(written["limits"])
+        for key in STANDARDS:
+            if key in written:
+                return f"{key.upper().replace('_', ' ')} {written[key]}"
         if "iso_1328_2" in written:
             return f"ISO 1328-2 {written['iso_1328_2']} of m {written['module']}, d {written['of']}"
         word = written["fit"] if "fit" in written else f"ISO 2768-{written['general']}"

@@ -8,7 +8,7 @@ Common base of every kind of tolerance.
 """
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
@@ -22,6 +22,7 @@ from tol3d.scene.place import KeyPath
 from tol3d.statistics.distributions import Distribution, DistributionSpec, StatedDistribution
 from tol3d.statistics.distributions.base import Stays
 from tol3d.statistics.distributions.drawn import restated
+from tol3d.statistics.distributions.unsized import UnsizedSpec
 from tol3d.strict import Strict, refused
 from tol3d.units import Dimension, Of, Positive, Quantity, refuse_dimension
 
@@ -170,6 +171,14 @@ class ToleranceEntry(Entry):
         """
         raise InputError("expected a tolerance whose law the scene states; change its width by a factor")
 
+    def sized(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Self:
+        """The tolerance with the law of a class, such as `{din_3967: cd25}`, at the size of what it is of.
+
+        Args:
+            parts, moves: of the scene; names may be wrong.
+        """
+        return self
+
     def in_numbers(self, draw: Any) -> Self:
         """The tolerance with limits in numbers where the scene states a class of limits.
 
@@ -192,6 +201,21 @@ class ToleranceSpec(ToleranceEntry):
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Files that its law reads."""
         return ((("distribution", field), name) for field, name in self.distribution.file_names())
+
+    def size(self, standard: str, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> float | None:
+        """Size by which a standard of STANDARDS gives the deviation limits [mm]; None where it gives it none."""
+        return None
+
+    @override
+    def sized(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Self:
+        law = self.distribution
+        size = self.size(law.standard, parts, moves) if isinstance(law, UnsizedSpec) else None
+        if not isinstance(law, UnsizedSpec) or size is None:
+            return self
+        try:
+            return self.model_copy(update={"distribution": law.of(size)})
+        except InputError:  # `loose_ends` says why
+            return self
 
     @override
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:

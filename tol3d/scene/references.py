@@ -5,6 +5,7 @@ from pathlib import Path
 from stat import S_ISREG
 
 from tol3d.errors import SceneError
+from tol3d.scene.bases import ToleranceSpec, laws_in
 from tol3d.scene.entry import Entry, Reference, Unusable
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
@@ -13,6 +14,7 @@ from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.figures import quantities_in
 from tol3d.scene.published.whole import PublishedWhole
 from tol3d.scene.schema import SECTIONS, Scene
+from tol3d.statistics.distributions.unsized import STANDARDS, UnsizedSpec
 from tol3d.units import expectation, shown
 
 Refusal = tuple[KeyPath, str]
@@ -36,7 +38,11 @@ def loose_ends(scene: Scene) -> list[Refusal]:
     if not problems:
         contradicted = list(_contradicted(scene))
         leading = [problem for problem, leads in contradicted if leads]
-        problems = leading or [*scene.grammar.problems(scene), *(problem for problem, _ in contradicted)]
+        problems = leading or [
+            *scene.grammar.problems(scene),
+            *(problem for problem, _ in contradicted),
+            *_unsized(scene),
+        ]
     return [*problems, *_unpublished(scene), *_unstoppable(scene)]
 
 
@@ -108,6 +114,20 @@ def _contradicted(scene: Scene) -> Iterator[tuple[Refusal, bool]]:
         for it in entry.contradictions(scene.parts, scene.moves):
             near = hint(it.got.strip("'"), it.known)
             yield ((section, name, *it.path), f"expected {it.expected}, got {it.got}{near}"), it.leads
+
+
+def _unsized(scene: Scene) -> Iterator[Refusal]:
+    """Classes of a standard on what it does not cover."""
+    for path, entry in scene.entries().items():
+        for law in laws_in(entry):
+            if not isinstance(law, UnsizedSpec):
+                continue
+            sentence, place = f"expected {STANDARDS[law.standard].of}, got another deviation", path
+            if isinstance(entry, ToleranceSpec) and law is entry.distribution:
+                place = (*path, "distribution", law.standard)
+                size = entry.size(law.standard, scene.parts, scene.moves)
+                sentence = sentence if size is None else law.refusal(size)
+            yield place, sentence
 
 
 def _unpublished(scene: Scene) -> Iterator[Refusal]:

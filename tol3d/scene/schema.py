@@ -271,6 +271,13 @@ class Scene(Strict):
         except ValidationError as error:
             raise SceneError(*cls.grammar.messages(error, data, origin)) from None
 
+    @model_validator(mode="after")
+    def _with_sizes(self) -> Self:
+        """Classes have the limits of what they are of."""
+        sized = {name: entry.sized(self.parts, self.moves) for name, entry in self.tolerances.items()}
+        object.__setattr__(self, "tolerances", sized)  # nobody has seen the scene yet
+        return self
+
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         """Schema with the laws that its tolerances may have, and files that it may include."""

@@ -5,24 +5,26 @@ it is kept as `drawn` of that law, so that the scene is dumped as it was written
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import partial
 from typing import Annotated, Any, Final, Self
 
-from pydantic import Field, TypeAdapter, ValidationError, model_validator
+from pydantic import AfterValidator, Field, TypeAdapter, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from tol3d.errors import InputError
 from tol3d.statistics.distributions.base import Distribution, DistributionSpec
 from tol3d.statistics.distributions.default_law import LimitLaw, StatedLimitLaw, UniformBetween
-from tol3d.statistics.standards import iso_286, iso_1328_2, iso_2768
+from tol3d.statistics.distributions.unsized import STANDARDS, UnsizedSpec
+from tol3d.statistics.standards import din_3967, iso_286, iso_1328_2, iso_2768
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Positive, Quantity, shown
 
 DEFAULT_LAW: Final = "default_law"
 """The key of a scene that names it."""
-KEYS: Final = ("fit", "general", "iso_1328_2", "iso_17485", "limits")
+KEYS: Final = ("fit", "general", "iso_1328_2", "iso_17485", "din_3967", "din_3964", "limits")
 """Keys, one of which states the form of limits, where no kind of law is stated."""
 PLUS_MINUS: Final = ("±", "+-", "+/-")
 MINUS: Final = str.maketrans({"−": "-"})  # as drawings are copied
@@ -34,10 +36,21 @@ TWO: Final = re.compile(
     rf"\s*{NOMINAL}(?P<one>[+-]{NUMBER}|0)\s*(?P<one_unit>{UNIT})?\s*/\s*(?P<other>[+-]{NUMBER}|0)\s*(?P<unit>{UNIT})?\s*"
 )
 WRITTEN: Final = 'limits such as "±0.1 mm", "40.1 mm +0.12/0" or [-19 um, -30 um]'
-DIN_3967: Final = re.compile(r"(?:a|ab|b|bc|c|cd|d|e|f|g|h)(?:2[1-9]|30)")
 LONGEST: Final = 100  # characters
 
 _default: ContextVar[LimitLaw | None] = ContextVar("default_law", default=None)
+
+
+def _of_standard(read: Callable[[str], object], text: str) -> str:
+    try:
+        read(text)
+    except InputError as error:
+        expected, _, got = str(error).removeprefix("expected ").partition(", got ")
+        raise refused("", expected, got) from None
+    return text
+
+
+_series, _field = partial(_of_standard, din_3967.series), partial(_of_standard, din_3967.field)
 
 
 class FitSpec(Strict):
@@ -81,6 +94,22 @@ class GradeSpec(Strict):
     law: StatedLimitLaw | None = Field(default=None, description="default: the scene's default_law")
 
 
+class SeriesSpec(Strict):
+    """`{din_3967: cd25}`: allowances of the tooth thickness of a cylindrical gear, by its reference diameter."""
+
+    din_3967: Annotated[str, AfterValidator(_series)] = Field(description="letters and number, such as cd25")
+    law: StatedLimitLaw | None = Field(default=None, description="default: the scene's default_law")
+
+
+class FieldSpec(Strict):
+    """`{din_3964: js7}`: allowances of the centre distance of cylindrical gears, by its nominal value."""
+
+    din_3964: Annotated[str, AfterValidator(_field)] = Field(
+        description="js5 to js11; a number alone is a class of axes too"
+    )
+    law: StatedLimitLaw | None = Field(default=None, description="default: the scene's default_law")
+
+
 class LimitsSpec(Strict):
     """`{limits: ±0.1 mm, law: {kind: uniform}}`: limits with a law of their own."""
 
@@ -88,15 +117,17 @@ class LimitsSpec(Strict):
     law: StatedLimitLaw | None = Field(default=None, description="default: by the scene's default_law")
 
 
-DRAWN: Final[TypeAdapter[Any]] = TypeAdapter(
-    FitSpec | GeneralSpec | GradeSpec | LimitsSpec | Annotated[str, Field(examples=["±0.1 mm"])] | list[str]
-)
+Limited = FitSpec | GeneralSpec | GradeSpec | LimitsSpec
+Sized = SeriesSpec | FieldSpec
+"""Classes whose limits depend on a size of the scene."""
+DRAWN: Final[TypeAdapter[Any]] = TypeAdapter(Limited | Sized | Annotated[str, Field(examples=["±0.1 mm"])] | list[str])
 """For the JSON Schema of what may be written."""
-Stated = FitSpec | GeneralSpec | GradeSpec | LimitsSpec
-_SPECS: Final[dict[str, type[Stated]]] = {
+_SPECS: Final[dict[str, type[Limited | Sized]]] = {
     "fit": FitSpec,
     "general": GeneralSpec,
     "iso_1328_2": GradeSpec,
+    "din_3967": SeriesSpec,
+    "din_3964": FieldSpec,
     "limits": LimitsSpec,
 }
 _LAW: Final[TypeAdapter[Any]] = TypeAdapter(StatedLimitLaw)
@@ -125,10 +156,18 @@ def _read(given: Any) -> LimitLaw | None:
 def is_drawn(value: Any) -> bool:
     """True if a value is limits as a drawing writes them, right or wrong."""
     if isinstance(value, str):
-        return any(sign in value for sign in PLUS_MINUS) or "/" in value or bool(DIN_3967.fullmatch(value))
+        return any(sign in value for sign in PLUS_MINUS) or "/" in value or _is_series(value)
     if isinstance(value, dict):
         return "kind" not in value and any(key in value for key in KEYS)
     return isinstance(value, list | tuple)
+
+
+def _is_series(value: str) -> bool:
+    try:
+        din_3967.series(value)
+    except InputError:
+        return False
+    return True
 
 
 def drawn_law(value: Any) -> DistributionSpec:
@@ -141,13 +180,21 @@ def drawn_law(value: Any) -> DistributionSpec:
     if isinstance(value, dict):
         stated = _stated(value)
         law = stated.law or law
+        if isinstance(stated, Sized):
+            standard = next(key for key in STANDARDS if key in value)
+            return UnsizedSpec(standard=standard, word=value[standard], law=_given(law), written=_as_text(value))
         lower, upper = _limits(stated)
     else:
         lower, upper = _written(value, "")
+    own = _given(law)
+    return own.between(lower, upper).as_drawn(_as_text(value), own)
+
+
+def _given(law: LimitLaw | None) -> LimitLaw:
     if law is None:
         words = f'the key "{DEFAULT_LAW}" of the scene, such as "{DEFAULT_LAW}: {{kind: normal, sigmas: 3}}", by which '
         raise refused("", f"{words}limits without a law are read", "none; or write the law out, with kind:")
-    return law.between(lower, upper).as_drawn(_as_text(value), law)
+    return law
 
 
 def restated(spec: DistributionSpec, law: Distribution) -> DistributionSpec:
@@ -184,8 +231,12 @@ def rewritten(written: Any, lower: float, upper: float) -> Any:
     if isinstance(written, dict):
         if "limits" in written:
             return {**written, "limits": rewritten(written["limits"], lower, upper)}
-        size = Quantity.parse(written["of"]) if written.keys() & {"fit", "general"} and "of" in written else None
-        text = _text_of(lower, upper, size or _limits(_stated(written))[1])
+        if written.keys() & {"fit", "general"} and "of" in written:
+            unit = Quantity.parse(written["of"])
+        else:
+            stated = _stated(written)
+            unit = Quantity(0.0, "um") if isinstance(stated, Sized) else _limits(stated)[1]
+        text = _text_of(lower, upper, unit)
         return {"limits": text, "law": written["law"]} if "law" in written else text
     if isinstance(written, list | tuple):
         own = [Quantity.parse(each) for each in written]
@@ -268,7 +319,7 @@ def _as_text(value: Any) -> Any:
     return str(value) if isinstance(value, Quantity) else value
 
 
-def _stated(value: dict[str, Any]) -> Stated:
+def _stated(value: dict[str, Any]) -> Limited | Sized:
     key = next(key for key in KEYS if key in value)
     if key not in _SPECS:
         words = "limits, as in 0/+30 um, for the formulae of ISO 17485 (f_pt, F_p and F_r by the"
@@ -278,7 +329,7 @@ def _stated(value: dict[str, Any]) -> Stated:
     return _SPECS[key].model_validate(value)
 
 
-def _limits(stated: Stated) -> tuple[Quantity, Quantity]:
+def _limits(stated: Limited) -> tuple[Quantity, Quantity]:
     if isinstance(stated, LimitsSpec):
         return _written(stated.limits, "limits")
     field = next(key for key, own in _SPECS.items() if isinstance(stated, own))
@@ -318,8 +369,8 @@ def _of_list(value: Any, field: str) -> tuple[Quantity, Quantity]:
 
 
 def _of_text(value: str, field: str) -> tuple[Quantity, Quantity]:
-    if DIN_3967.fullmatch(value):
-        raise refused(field, "both limits, as in -42/-70 um, for the tables of DIN 3967 are not in tol3d", value)
+    if _is_series(value):
+        raise refused(field, f"{{din_3967: {value}}}", value)
     text = value.translate(MINUS) if len(value) <= LONGEST else ""
     if match := SYMMETRIC.fullmatch(text):
         unit = match["unit"] or match["nominal_unit"]

@@ -1,23 +1,36 @@
 """Tolerances of the relative position of a mesh's axes."""
 
 import math
+from collections.abc import Mapping
 from typing import ClassVar, Literal
 
 from pydantic import Field
+from typing_extensions import override
 
 from tol3d.gearing.effects import AxesOffset, AxisOffset, AxisTilt
-from tol3d.gearing.grammar.moves import BevelMeshSpec
+from tol3d.gearing.grammar.moves import BevelMeshSpec, MeshSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, MeshToleranceSpec, Nominal
+from tol3d.scene.bases import MoveSpec, PartSpec
 from tol3d.scene.entry import Entry
 from tol3d.units import Dimension
 
 
 class CentreDistanceSpec(MeshToleranceSpec):
-    """f_a, a length: added to the centre distance; positive opens, but closes a pair with an internal gear."""
+    """f_a, a length: added to the centre distance; positive opens, but closes a pair with an internal gear.
+
+    `{din_3964: js7}` as its distribution is the limits at the mesh's own centre distance.
+    """
 
     displaces: ClassVar[bool] = True
 
     kind: Literal["centre_distance"]
+
+    @override
+    def size(self, standard: str, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> float | None:
+        mesh = moves.get(self.of)
+        if standard != "din_3964" or not isinstance(mesh, MeshSpec) or mesh.centre_distance is None:
+            return None
+        return mesh.centre_distance.internal
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """The driven axis lies further from the driver's."""

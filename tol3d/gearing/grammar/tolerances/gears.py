@@ -1,16 +1,18 @@
 """Tolerances of a gear as a whole, and of its seat on the shaft."""
 
+from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+from typing_extensions import override
 
 from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
-from tol3d.gearing.grammar.parts import GearSpec, ShaftSpec
+from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec, ShaftSpec, SpurGearSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, Nominal, Unit, in_direction
 from tol3d.gears import Gear, InternalGear
 from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.tooth_measures import OverPins, PinScale, Span, ToothMeasure
-from tol3d.scene.bases import Length
+from tol3d.scene.bases import Length, MoveSpec, PartSpec
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
@@ -159,7 +161,7 @@ class ToothThicknessSpec(GearToleranceSpec):
     tooth grows along its normals, and that of a ring, over spaces, shrinks by it; `{pins: 3.5 mm}` by the size over
     two pins or balls, of which the arc of each trial is the exact inverse. A bevel tooth is thinned in
     proportion along its face (the flank is turned), or by the same normal offset everywhere; on a spur gear that is
-    the same.
+    the same. `{din_3967: cd25}` as its distribution is the arc's limits of a cylindrical gear.
     """
 
     kind: Literal["tooth_thickness"]
@@ -176,6 +178,13 @@ class ToothThicknessSpec(GearToleranceSpec):
         if isinstance(value, str) and value not in ("arc", "normal"):
             raise refused("", "arc, normal, a span such as {span: 4}, or {pins: 3.5 mm}", value)
         return value
+
+    @override
+    def size(self, standard: str, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> float | None:
+        gear = parts.get(self.of)
+        if standard != "din_3967" or self.measured != "arc" or not isinstance(gear, SpurGearSpec | InternalGearSpec):
+            return None
+        return gear.teeth * gear.module.internal
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""
