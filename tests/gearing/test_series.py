@@ -1,15 +1,20 @@
 """Tooth thickness by DIN 3967 and centre distance by DIN 3964 in a scene."""
 
+import itertools
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from scene_texts import edited, refusal_at, scene_of, written
+from scipy.optimize import brentq
 
 from tol3d import check_scene
 from tol3d.analyses.kept_changes import scene_with
 from tol3d.analyses.response import response_of
 from tol3d.analyses.stated_changes import Change
+from tol3d.gearing.summary.backlash_stages import backlash_stages
+from tol3d.gearing.system import GearSystem
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.simulate import simulation_of
 
@@ -47,6 +52,43 @@ def test_a_public_stage_has_its_limits_and_its_backlash(tmp_path: Path) -> None:
         thin_wheel = replace(wheel, tooth_thickness_deviation=1e-3 * expected["wheel thickness"][end])
         distance = 61.8 + 1e-3 * expected["distance"][1 - end]
         assert 1e3 * SpurPair(thin_pinion, thin_wheel, distance).normal_backlash == pytest.approx(said, abs=PRINTED)
+
+
+def test_the_table_of_backlash_has_the_words_of_drawings(tmp_path: Path) -> None:
+    """By hand: cos alpha_w = 57.321 mm/61.8 mm; j_r from the involute; sigma of three uniform laws by their slopes."""
+    model = check_scene(written(edited(PAIR, ("js7}", "js7, law: {kind: normal}}")), tmp_path)).model
+    rows = {own.symbol: own for own in backlash_stages(model, GearSystem, "exact")}
+    alpha, a = math.radians(20.0), 61.8
+    base = 61.0 * math.cos(alpha)
+    working = math.acos(base / a)
+    for symbol, factor in (("j_bn", 1.0), ("j_wt", 1 / math.cos(working)), ("j_t", 1 / math.cos(alpha))):
+        row = rows[symbol]
+        assert (row.least_um, row.largest_um) == pytest.approx((131.244 * factor, 219.448 * factor), abs=PRINTED * 2)
+    tight = brentq(lambda own: math.tan(own) - own - (math.tan(working) - working - 0.131244 / (2 * base)), 0.1, 0.6)
+    assert rows["j_r"].least_um == pytest.approx(1e3 * (a - base / math.cos(tight)), abs=PRINTED * 4)
+    nominal = 25.927  # um, without thinning
+    mean = nominal + (69 + 90) * math.cos(alpha)
+    slope = 2 * math.sin(working)
+    sigma = math.sqrt(((15 * math.cos(alpha)) ** 2 + (20 * math.cos(alpha)) ** 2) / 3 + (slope * 5.0) ** 2)
+    ends = (mean - 3 * sigma, mean + 3 * sigma)
+    row = rows["j_bn"]
+    assert (row.least_3sigma_um, row.largest_3sigma_um) == pytest.approx(
+        (max(ends[0], 131.244), min(ends[1], 219.448)), abs=0.03
+    )
+
+
+def test_stages_add_what_is_stated_of_the_pair() -> None:
+    """Each stage has the tolerances of those before it: the worst can only go further out."""
+    rows = backlash_stages(check_scene("internal_pair").model, GearSystem, "analytic")
+    own = [row for row in rows if row.symbol == "j_bn"]
+    assert [row.stage for row in own] == ["theoretical", "acceptance", "operating"]
+    for inner, outer in itertools.pairwise(own):
+        assert outer.least_um is not None
+        assert inner.least_um is not None
+        assert inner.largest_um is not None
+        assert outer.largest_um is not None
+        assert outer.least_um < inner.least_um
+        assert outer.largest_um >= inner.largest_um
 
 
 def test_a_moved_class_becomes_numbers(tmp_path: Path) -> None:

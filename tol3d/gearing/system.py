@@ -24,6 +24,7 @@ from tol3d.gearing.model.model import gear_contributor
 from tol3d.gearing.play.linked import link_contributors
 from tol3d.gearing.play.play import breakdowns_of
 from tol3d.gearing.stack_up import closed_form, reference_form
+from tol3d.gearing.summary.backlash_stages import backlash_stages
 from tol3d.gearing.summary.train_sections import description, train_sections
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import kept
@@ -33,7 +34,7 @@ from tol3d.study.system import measure as system_measure
 from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
-from tol3d.study.system.outcome import Statuses
+from tol3d.study.system.outcome import GEOMETRIC, Statuses
 from tol3d.study.system.pooled import PooledTerms
 from tol3d.study.system.positions import Positions
 from tol3d.study.system.system import Columns, KeyPath, Published, StreamKey, System
@@ -188,7 +189,10 @@ class GearSystem:
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
         """See System: the trains with their stages, and what their links say of themselves."""
-        found: dict[str, Any] = {"trains": train_sections(self.model, terms, published)}
+        exact = any(GEOMETRIC in own for own in terms.values())
+        limits = backlash_stages(self.model, GearSystem, EXACT if exact else ANALYTIC_METHOD)
+        found: dict[str, Any] = {"backlash": limits} if limits else {}
+        found |= {"trains": train_sections(self.model, terms, published)}
         for link in self.model.links:
             for section, own in link.sections(link_contributors(self.model, link.name)).items():
                 found[section] = {**found.get(section, {}), link.name: own}

@@ -7,6 +7,7 @@ for internal gears with their teeth, radii and centre distance counted negative.
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,22 @@ from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.involute import inverse_involute, involute
 from tol3d.gears.pair import CONTACT_MARGIN, Displaced, RollingPair
 from tol3d.numerics.arrays import Array
+
+
+class Backlashes(NamedTuple):
+    """A backlash of a pair [mm]: ISO 21771's j_bn, j_wt, j_t and j_r.
+
+    Args:
+        normal: shortest distance of the flanks.
+        working: arc on the working pitch circles.
+        reference: arc on the reference circles.
+        radial: travel of the gears towards each other until both flanks touch; nan where they never would.
+    """
+
+    normal: float
+    working: float
+    reference: float
+    radial: float
 
 
 @dataclass(frozen=True)
@@ -122,6 +139,15 @@ class CylindricalPair(RollingPair):
     def angular_backlash(self) -> tuple[float, float]:
         """Free turn of the pinion (wheel held) and of the wheel (pinion held) [rad]: j_bn / r_b."""
         return self.normal_backlash / self.pinion.base_radius, self.normal_backlash / self.wheel.base_radius
+
+    def from_normal(self, normal: float) -> "Backlashes":
+        """A normal backlash [mm] of other teeth at this centre distance, in all the words of drawings."""
+        working = self.working_pressure_angle
+        tight = involute(working) - normal / (2 * self.base_radii)
+        radial = math.nan
+        if tight >= 0.0:
+            radial = self.iso_sign * self.centre_distance - self.base_radii / math.cos(inverse_involute(tight))
+        return Backlashes(normal, normal / math.cos(working), normal / math.cos(self.pinion.pressure_angle), radial)
 
     # path of contact ------------------------------------------------------------------------------
 

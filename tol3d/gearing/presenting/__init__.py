@@ -33,8 +33,14 @@ class GearPresenter(ShowsBuilds):
         return {f"chain-{name}" if k else "chain": partial(_draw_chain, summary, name) for k, name in enumerate(trains)}
 
     def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
-        """Tables of every train, and those of its links."""
-        return (*_lazily("train_tables").train_report(summary), *_lazily("shown_train").link_sections(summary))
+        """Limits of backlash, tables of every train, and those of its links."""
+        limits = (summary.backlash or ()) if isinstance(summary, TrainsOfRun) else ()
+        backlash = _lazily("backlash_table").backlash_table(limits)
+        return (
+            *backlash,
+            *_lazily("train_tables").train_report(summary),
+            *_lazily("shown_train").link_sections(summary),
+        )
 
     def measure_rows(self, measure: MeasureSummary, summary: RunSummary) -> "Sequence[FurtherRow]":
         """Rows with the sums of the stages' ends, if a measure is the sum of a train's stages."""

@@ -7,11 +7,13 @@ from typing import Annotated, Any, Final
 from tol3d.gearing.model import Backlash, Contributor, LostMotion, Measure, Model, Planar, Train, TransmissionError
 from tol3d.gearing.model.links import LoadPath, Parallel, links_of
 from tol3d.gearing.model.trains import gravity_torque
+from tol3d.gearing.presenting.backlash_table import backlash_table
 from tol3d.gearing.presenting.coefficient_tables import coefficients_tables
 from tol3d.gearing.presenting.drawing_sizes import drawing_sizes
 from tol3d.gearing.presenting.shown_train import link_blocks
+from tol3d.gearing.summary.backlash_stages import backlash_stages
 from tol3d.gearing.summary.measure_words import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
-from tol3d.gearing.system import gear_model
+from tol3d.gearing.system import EXACT, GearSystem, gear_model
 from tol3d.gears import (
     LEFT,
     RIGHT,
@@ -30,6 +32,7 @@ from tol3d.report.system_check import law_name, sample_notes, system_blocks
 from tol3d.report.worst_found import worst_blocks
 from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
 from tol3d.study.system.draw import JointDraw
+from tol3d.study.system.method import ANALYTIC_METHOD
 from tol3d.study.trials.simulation import Simulation
 from tol3d.units import angle_text
 
@@ -124,7 +127,9 @@ def check_blocks(simulation: Simulation) -> list[PageItem]:
     model = gear_model(simulation.system)
     if any(link.compares for link in model.links):
         return [*link_blocks(model), *mechanics_blocks(model), *system_blocks(simulation)]
-    blocks = [*link_blocks(model), *mechanics_blocks(model), *measures_table(model)]
+    engine = ANALYTIC_METHOD if simulation.study.engine == ANALYTIC_METHOD else EXACT
+    backlash = backlash_table(backlash_stages(model, GearSystem, engine))
+    blocks = [*link_blocks(model), *mechanics_blocks(model), *backlash, *measures_table(model)]
     return [*blocks, *(contributors_table(model) if model.contributors else ()), *worst_blocks(simulation)]
 
 

@@ -1,7 +1,7 @@
 """Gear entries in summary.json: keys of their measures, descriptions of the measures, and trains."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Final, Literal, Self
+from typing import Annotated, Final, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 
@@ -18,6 +18,7 @@ from tol3d.strict import refused
 from tol3d.study.runs.summary.kinds import SummaryKinds
 from tol3d.study.runs.summary.measure import Conversion, MeasureSummary
 from tol3d.study.runs.summary.run import RunSummary
+from tol3d.study.runs.summary.shows import Shows
 from tol3d.study.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Known, Label, Maybe, Number, Numbers, Section, Unit
 from tol3d.units import shown
 
@@ -280,9 +281,30 @@ class TrainSummary(Section):
     sums: Sums
 
 
-class TrainsOfRun(RunSummary):
-    """The trains of a run."""
+BacklashSymbol = Literal["j_bn", "j_wt", "j_t", "j_r"]
+BACKLASH_SYMBOLS: Final[tuple[BacklashSymbol, ...]] = get_args(BacklashSymbol)
 
+
+class BacklashLimits(Section):
+    """Limits of a mesh's backlash by the tolerances of a stage and those before it."""
+
+    mesh: Label
+    stage: Annotated[Literal["theoretical", "acceptance", "operating"], Shows("stage", "words")]
+    symbol: Annotated[BacklashSymbol, Shows("", "words")] = Field(
+        description="normal, on the working circles, on the reference circles, radial"
+    )
+    least_um: Annotated[Known, Shows("least [µm]", ".1f")] = Field(description="of the worst builds that were found")
+    largest_um: Annotated[Known, Shows("largest [µm]", ".1f")]
+    least_3sigma_um: Annotated[Known, Shows("mean − 3 σ [µm]", ".1f")] = Field(
+        description="no further than the worst builds"
+    )
+    largest_3sigma_um: Annotated[Known, Shows("mean + 3 σ [µm]", ".1f")]
+
+
+class TrainsOfRun(RunSummary):
+    """The trains and the backlash of meshes of a run."""
+
+    backlash: Maybe[list[BacklashLimits]] = LEFT_OUT
     trains: Maybe[Mapping[Label, TrainSummary]] = LEFT_OUT
 
     @model_validator(mode="after")
