@@ -61,8 +61,8 @@ def test_the_table_of_backlash_has_the_words_of_drawings(tmp_path: Path) -> None
     alpha, a = math.radians(20.0), 61.8
     base = 61.0 * math.cos(alpha)
     working = math.acos(base / a)
-    for symbol, factor in (("j_bn", 1.0), ("j_wt", 1 / math.cos(working)), ("j_t", 1 / math.cos(alpha))):
-        row = rows[symbol]
+    normal, arc, reference = (rows[symbol] for symbol in ("j_bn", "j_wt", "j_t"))
+    for row, factor in ((normal, 1.0), (arc, 1 / math.cos(working)), (reference, 1 / math.cos(alpha))):
         assert (row.least_um, row.largest_um) == pytest.approx((131.244 * factor, 219.448 * factor), abs=PRINTED * 2)
     tight = brentq(lambda own: math.tan(own) - own - (math.tan(working) - working - 0.131244 / (2 * base)), 0.1, 0.6)
     assert rows["j_r"].least_um == pytest.approx(1e3 * (a - base / math.cos(tight)), abs=PRINTED * 4)
@@ -71,8 +71,7 @@ def test_the_table_of_backlash_has_the_words_of_drawings(tmp_path: Path) -> None
     slope = 2 * math.sin(working)
     sigma = math.sqrt(((15 * math.cos(alpha)) ** 2 + (20 * math.cos(alpha)) ** 2) / 3 + (slope * 5.0) ** 2)
     ends = (mean - 3 * sigma, mean + 3 * sigma)
-    row = rows["j_bn"]
-    assert (row.least_3sigma_um, row.largest_3sigma_um) == pytest.approx(
+    assert (normal.least_3sigma_um, normal.largest_3sigma_um) == pytest.approx(
         (max(ends[0], 131.244), min(ends[1], 219.448)), abs=0.03
     )
 
