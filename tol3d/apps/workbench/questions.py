@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from tol3d.analyses.kept_changes import scene_with
 from tol3d.apps.workbench.builds import build_view
-from tol3d.apps.workbench.card import answer, histogram, sliders, written_words
+from tol3d.apps.workbench.card import answer, histogram, limit_fields, result, sliders, written_words
 from tol3d.apps.workbench.jobs import Job, Jobs
 from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.session import AT_ONCE, FEW, Session
@@ -100,7 +100,11 @@ class Questions:
         except InputError as error:
             return found | {"problems": _problems(error)}
         measures = [{"name": own.name, "unit": own.unit} for own in session.response.measures]
+        now, dropped = session.still(notes.now)
+        beside = [still for still, _ in map(session.still, notes.beside) if still]
+        found["notes"] |= {"now": now, "beside": beside}
         return found | {
+            "dropped": [*dropped],
             "title": session.scene.scene,
             "description": session.scene.description,
             "measures": measures,
@@ -119,8 +123,11 @@ class Questions:
         if now:
             tried.go_on(AT_ONCE, min(FEW, tried.count))
         first = base if base.done < base.count and not now else tried
+        tried = tried.within(session.limits(now))
         return {
             "answer": answer(base, tried),
+            "result": result(tried),
+            "limits": limit_fields(base, tried),
             "chart": histogram(base, tried, None),
             "written": written_words(session, now),
             "done": first.done,
@@ -133,7 +140,8 @@ class Questions:
         session, measure, now = self._asked(asked)
         base = session.evaluated(measure, {})
         base.go_on(0.0, FEW)
-        chart = histogram(base, None, session.estimate(measure, now) if now else None)
+        moved = session.estimate(measure, now) if session.changes(now) else None
+        chart = histogram(base.within(session.limits(now)), None, moved)
         return {"chart": chart, "written": written_words(session, now)}
 
     def sliders(self, asked: Told) -> Told:
@@ -233,7 +241,7 @@ class Questions:
     def keep(self, asked: Told) -> Told:
         """Keep moved tolerances in the scene's text: the difference first, then the file."""
         session, _, now = self._asked(asked)
-        text = scene_with(session.response, session.scene, session.changes(now)).text
+        text = scene_with(session.response, session.scene, session.changes(now), session.limits(now)).text
         before = session.content.decode("utf-8")
         if not asked.get("write"):
             return {"diff": _difference(before, text, session.path.name), "digest": session.digest}
