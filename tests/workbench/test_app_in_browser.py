@@ -166,13 +166,13 @@ def test_the_first_story_by_keyboard_alone(app: App) -> None:
     app.load()
     app.focus(SLIDER)
     app.key("ArrowRight")
-    wider = {CENTRE: "x1.014"}
+    wider = {CENTRE: "x1.01"}
     app.solid(wider)
     assert not app.page.ask("seen.at(-1)"), "an estimate is not drawn over what is simulated"
-    assert app.page.ask(f"document.querySelector({json.dumps(FIELD)}).value") == "±20.28 um"
+    assert app.page.ask(f"document.querySelector({json.dumps(FIELD)}).value") == "±20.2 µm"
     assert app.page.ask("document.activeElement.dataset.line") == CENTRE
     app.key("PageUp")
-    app.solid({CENTRE: "x1.338"})  # 4 ** 0.21, a tenth of the range further
+    app.solid({CENTRE: "x1.116"})  # 1.01 ** 11, ten steps further
     app.key("z", control=True)
     app.solid(wider)
     app.key("z", control=True)
@@ -211,13 +211,13 @@ def test_a_slider_on_its_way_shows_an_estimate_until_it_is_released(app: App) ->
     assert app.page.ask("document.querySelector('#answer').textContent") == before
     assert app.now() == {}
     app.told(SLIDER, "change", 40)
-    app.solid({CENTRE: "x1.741"})
+    app.solid({CENTRE: "x1.489"})
 
 
 def test_the_worst_build_in_3d_is_that_of_the_tolerances_that_are_tried(app: App) -> None:
     app.load()
     gap = "[...document.querySelectorAll('.names span')].map(own => own.textContent).find(own => own.startsWith('gap'))"
-    for now in ({}, {CENTRE: "x1.741"}):
+    for now in ({}, {CENTRE: "x1.489"}):
         if now:
             app.told(SLIDER, "change", 40)
         else:
@@ -231,7 +231,7 @@ def test_the_worst_build_in_3d_is_that_of_the_tolerances_that_are_tried(app: App
 
 def test_reset_aside_and_a_reload(app: App) -> None:
     app.load()
-    wider, other = {CENTRE: "x1.014"}, "lost motion"
+    wider, other = {CENTRE: "x1.01"}, "lost motion"
     app.focus(SLIDER)
     app.key("ArrowRight")
     app.solid(wider)

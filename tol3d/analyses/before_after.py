@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import Field
 from scipy.special import ndtr
 
+from tol3d.analyses.compared_builds import limits_of as both_limits
 from tol3d.analyses.design_points import design_points
 from tol3d.analyses.limit_state import LimitState, Side
 from tol3d.analyses.rare_events import DRAWS, rare_event
@@ -214,14 +215,13 @@ def what_if(
             alone, sigma = own.of(one.name), float(rates.sigmas(own)[k])
             sides = limits_of(judged[word][k])
             both[word] = _numbers(alone, sides, sigma, values[word], results[word].get(one.name), edges, draws, seed)
-        before_them, after_them = ([limits_of(own[k]).get(side) for side in SIDES] for own in judged.values())
-        others = {} if before_them == after_them else {"limits_before": before_them}
+        were, are = (both_limits(own[k]) for own in judged.values())
         found[one.name] = made(
             MeasureWhatIf,
             unit=one.unit,
-            lower_limit=after_them[0],
-            upper_limit=after_them[1],
-            **others,
+            lower_limit=are[0],
+            upper_limit=are[1],
+            **({} if were == are else {"limits_before": [*were]}),
             edges=edges.tolist(),
             before=both["before"],
             after=both["after"],
@@ -234,10 +234,10 @@ def what_if(
         each = f", each of {1 + len(others)}" if others else ""
         laws = {word: told(by_name[first], own.drawn_by(first)) + each for word, own in states.items()}
         rows.append(made(ChangeMade, contributor=line, **laws))
-    for own, other in zip(asked.measures, judged["after"], strict=True):
-        if other is not own:
-            words = [limits_text(*(limits_of(each).get(side) for side in SIDES), own.unit) for each in (own, other)]
-            rows.append(made(ChangeMade, contributor=f"limits of {own.name}", before=words[0], after=words[1]))
+    for one, other in zip(asked.measures, judged["after"], strict=True):
+        if other is not one:
+            words = [limits_text(*both_limits(each), one.unit) for each in (one, other)]
+            rows.append(made(ChangeMade, contributor=f"limits of {one.name}", before=words[0], after=words[1]))
     return made(
         WhatIf,
         changes=rows,

@@ -123,7 +123,7 @@ def _numbered(before: Any, after: Any) -> Iterator[str]:
     if not isinstance(before, dict) or before == after:
         return
     for key in CLASSES:
-        if key in before and not (isinstance(after, dict) and key in after):
+        if key in before and not (isinstance(after, dict) and after.keys() & {*CLASSES}):
             was = before[key] if isinstance(before[key], str) else f"{key} {before[key]}"
             yield f"{after if isinstance(after, str) else flow_text(after)}, was {was}"
             return

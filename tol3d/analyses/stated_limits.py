@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, is_dataclass, replace
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 from tol3d.analyses.response import Response
 from tol3d.errors import InputError
@@ -10,8 +10,7 @@ from tol3d.statistics.distributions.drawn import limits_written
 from tol3d.study.system.measure import Measure
 from tol3d.units import UNITS, Quantity, expectation
 
-Field = Literal["lower_limit", "upper_limit"]
-FIELDS: Final[tuple[Field, Field]] = ("lower_limit", "upper_limit")
+FIELDS: Final = ("lower_limit", "upper_limit")
 NONE: Final = "none"
 """Word for no limit."""
 EXAMPLES: Final = "10 um..40 um, 10 um.. of the lower one alone, none..40 um without a lower one, ±20 um"
@@ -27,7 +26,7 @@ class OtherLimits:
     """
 
     measure: str
-    stated: Mapping[Field, Quantity | None]
+    stated: Mapping[str, Quantity | None]
 
     def on(self, measure: Measure) -> Measure:
         """The measure with them.
@@ -65,13 +64,13 @@ def limits_of_text(response: Response, text: str) -> OtherLimits:
         raise InputError(f"--limits {text!r}: {error}") from None
 
 
-def _stated(measure: Measure, value: str, sides: Sequence[Field]) -> Mapping[Field, Quantity | None]:
+def _stated(measure: Measure, value: str, sides: Sequence[str]) -> Mapping[str, Quantity | None]:
     """The changed limits.
 
     Raises:
         InputError, ValueError: they cannot be.
     """
-    found: dict[Field, Quantity | None] = {}
+    found: dict[str, Quantity | None] = {}
     pair = limits_written(value)
     if pair is not None:
         found = dict(zip(FIELDS, pair, strict=True))
@@ -93,7 +92,7 @@ def _stated(measure: Measure, value: str, sides: Sequence[Field]) -> Mapping[Fie
     return found
 
 
-def changeable(response: Response, measure: Measure) -> Sequence[Field]:
+def changeable(response: Response, measure: Measure) -> Sequence[str]:
     """The limits that a measure may have: of a curve the lowest value has the lower one, the highest the upper one."""
     if measure.name not in response.curves:
         return FIELDS

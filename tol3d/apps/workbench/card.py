@@ -25,12 +25,12 @@ from tol3d.report.html.frame import NARROW
 from tol3d.report.html.svg import heard, svg
 from tol3d.report.measure_charts import limit_marks, spanned
 from tol3d.report.number import (
-    UNIT_SIGNS,
     bounded_share_text,
     limit_text,
     limits_text,
     measured_text,
     percent_text,
+    signed_units,
     value_text,
 )
 from tol3d.report.shown_unit import LONG_UM
@@ -45,10 +45,8 @@ from tol3d.study.system.other_laws import Zoned
 BINS: Final = 40
 TOGETHER: Final = 5
 """Bars that are told as one in the histogram's table."""
-HIGH: Final = 0.55
+HIGH: Final = 0.45
 """Height of the histogram, of a chart's: sliders are seen below it."""
-SIGNS: Final = {"um": UNIT_SIGNS["um"]}
-"""Signs of units in fields: those of reports that `--set` reads behind a number."""
 STEP: Final = 1.01
 """Factor on the width by a step of a slider, as in `page/sliders.js`."""
 WIDEST: Final = 4.0
@@ -141,7 +139,7 @@ def _advice(now: Evaluated) -> str:
 def limit_fields(base: Evaluated, now: Evaluated) -> Mapping[str, Mapping[str, str | bool]]:
     """Texts of the fields of both limits now and of the scene, "" without one, and whether they may be changed."""
     shown, sides = Shown.of(base), changeable(base.response, base.response.measures[0])
-    found = {}
+    found = dict[str, dict[str, str | bool]]()
     for side, field in zip(SIDES, FIELDS, strict=True):
         texts = [
             "" if (limit := limits_of(own.measure).get(side)) is None else limit_text(shown.per * limit, shown.unit)
@@ -285,7 +283,7 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
     ends = _ends(scope)
     inside = list[Inside]([tag("div", tag("b", line), *words, class_="head")])
     if ends is None:
-        inside.append(tag("p", f"stays as it is: {scope.above}", class_="note"))
+        inside.append(tag("p", f"stays as it is: {signed_units(scope.above)}", class_="note"))
     else:
         low, high = ends
         at = round(math.log(_factor(draw, other)) / math.log(STEP))
@@ -341,7 +339,7 @@ def _why(scope: Scope) -> str | None:
         for why, end in ((scope.below, scope.factors[0] > 1 / WIDEST), (scope.above, scope.factors[1] < WIDEST))
         if end
     ]
-    return "; ".join(reasons) or None
+    return signed_units("; ".join(reasons)) or None
 
 
 def _factor(draw: Draw, other: Draw) -> float:
@@ -362,7 +360,7 @@ def _width(draw: Draw) -> float:
 def _written(contributor: Contributor, draw: Draw) -> str:
     """A tolerance as `--set` takes it, with the signs of reports: ±20 µm, -30 µm..-19 µm, or the width of a zone."""
     per, law = contributor.per_unit, draw.distribution
-    unit = "" if contributor.unit == "1" else f" {SIGNS.get(contributor.unit, contributor.unit)}"
+    unit = "" if contributor.unit == "1" else signed_units(f" {contributor.unit}")
     if isinstance(draw, Zoned):
         return f"{draw.width / per:.6g}{unit}"
     if isinstance(law, Distribution) and law.limits is not None:

@@ -101,7 +101,7 @@ class Questions:
             return found | {"problems": _problems(error)}
         measures = [{"name": own.name, "unit": own.unit} for own in session.response.measures]
         now, dropped = session.still(notes.now)
-        beside = [still for still, _ in map(session.still, notes.beside) if still]
+        beside = [still for own in notes.beside if (still := session.still(own)[0]) or not own]
         found["notes"] |= {"now": now, "beside": beside}
         return found | {
             "dropped": [*dropped],
@@ -168,7 +168,7 @@ class Questions:
         rows = dict[str, tuple[Array, Mapping[str, Array] | None]]()
         if "mean" in asked.get("builds", ()):
             rows["mean"] = (session.changed(now).mean, None)
-        evaluated = session.evaluated(measure, now)
+        evaluated = session.evaluated(measure, now).within(session.limits(now))
         if "worst" in asked.get("builds", ()) and evaluated.done:
             rows["worst"] = evaluated.trial(evaluated.worst)
         if (trial := asked.get("trial")) is not None:

@@ -128,7 +128,8 @@ class Evaluated:
         (measure,) = limited(self.response.measures, limits)
         if measure is self.measure:
             return self
-        self.sample  # noqa: B018 - knows the pilots
+        if self.done:
+            self.sample  # noqa: B018 - knows the pilots
         other = copy(self)
         other._measure, other._sample = measure, None
         return other

@@ -75,11 +75,12 @@ class Scale:
             return []
         if axis.log:
             return decades(axis.low, axis.high)
-        every = (ticks_of(axis.low, axis.high, axis.unit, most) for most in range(self.most, 3 * self.most))
-        first = next(every)
+        first = ticks_of(axis.low, axis.high, axis.unit, self.most)
         if len(first) >= LEAST_TICKS:
             return first
-        return next((own for own in every if len(own) >= LEAST_TICKS and self._stand_apart(own)), first)
+        denser = (ticks_of(axis.low, axis.high, axis.unit, most) for most in range(self.most + 1, 3 * self.most))
+        some = (own for every in denser for own in (every, every[::2]))
+        return next((own for own in some if len(own) >= LEAST_TICKS and self._stand_apart(own)), first)
 
     def _stand_apart(self, ticks: Ticks) -> bool:
         """True if a letter's room is between the words of each tick and of the next, side by side."""

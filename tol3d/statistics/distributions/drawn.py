@@ -257,7 +257,8 @@ def in_class(spec: DistributionSpec, tolerance_class: str, size: Quantity) -> Di
     drawn = spec.drawn if isinstance(spec.drawn, dict) else {}
     written = {"fit": tolerance_class, "of": drawn.get("of", str(size))}
     written |= {"law": drawn["law"]} if "law" in drawn else {}
-    return spec.between.between(*_limits(_stated(written))).as_drawn(written, spec.between)
+    between: LimitLaw = spec.between
+    return between.between(*_limits(_stated(written))).as_drawn(written, between)
 
 
 def tolerated_size(written: Any) -> Quantity | None:
