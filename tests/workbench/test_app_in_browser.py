@@ -47,7 +47,8 @@ CONTRAST = """(() => {
     ? colour(getComputedStyle(own).backgroundColor) : behind(own.parentElement);
   const found = [];
   for (const own of document.querySelectorAll("body *:not(#stage *):not(.cm-line *):not(option)")) {
-    const text = [...own.childNodes].filter((node) => node.nodeType === 3).map((node) => node.data.trim()).join("");
+    const text = own.matches("input[type=text], select") ? own.value || own.placeholder
+      : [...own.childNodes].filter((node) => node.nodeType === 3).map((node) => node.data.trim()).join("");
     if (!text || !own.checkVisibility() || own.disabled) continue;
     const style = getComputedStyle(own), svg = own.closest("svg");
     const [one, two] = [light(colour(svg ? style.fill : style.color)), light(behind(own))].sort((a, b) => b - a);

@@ -1,6 +1,7 @@
 """The number on the card is that of a run and of `what-if`, and what is kept in the scene's file has it too."""
 
 import json
+import re
 import shutil
 from collections.abc import Iterator
 from concurrent.futures import wait
@@ -166,7 +167,9 @@ def test_other_limits_have_the_numbers_of_what_if_and_of_the_kept_scene(
         "+    upper_limit: 70 um",
     ]
     assert diff_lines(told)[-3:] == changed
-    own.keep(asked(now, write=True, digest=told["digest"]))
+    aside = {"limits: normal backlash": "none..", CENTRE: "x0.5"}
+    own.keep(asked(now, write=True, digest=told["digest"], beside=[aside]))
+    assert own.scene(asked())["notes"]["beside"] == [aside | {CENTRE: "±10 µm"}]
     run = run_scene(path_of(own), overrides=Overrides(witness=0), out=tmp_path / "run")
     summary = run.found.measures[BACKLASH]
     assert summary.limits == pytest.approx((36.0, 70.0), rel=1e-12)
@@ -183,7 +186,7 @@ def test_a_limit_can_be_left_out_and_comes_back(pair: Questions) -> None:
     assert "LSL" not in none["chart"]
     assert answered(pair, {})["limits"]["lower_limit"]["now"] == "15 µm"
     other = pair.card(asked({"limits: lost motion": "..9 arcmin"}))
-    assert other == answered(pair, {}), "limits of another measure"
+    assert other | {"written": {}} == answered(pair, {}), "limits of another measure"
     with pytest.raises(InputError, match="expected a lower limit below the upper one, got 15 um and 9 um"):
         pair.card(asked({"limits: normal backlash": "..9 um"}))
 
@@ -385,6 +388,10 @@ def test_sliders_are_sorted_by_the_shares_of_a_run_and_end_where_a_tolerance_can
     lines = [part.partition('"')[0] for part in told["sliders"].split('<li data-line="')[1:]]
     (run,) = (own.result() for own in pair.runs.values())
     shares = {own.name: own.geometric_percent or 0.0 for own in run.found.measures[BACKLASH].contributors}
+    low, high, at = (
+        int(own) for own in re.findall(rf'min="(-\d+)" max="(\d+)" value="(\d+)"[^>]*"{CENTRE}"', told["sliders"])[0]
+    )
+    assert (1.01**at, 1.01**low, 1.01**high) == pytest.approx((1.65, 0.25, 4.0), rel=0.01)
     moved = [part.partition('"')[0] for part in told["sliders"].split('<li class="moved" data-line="')[1:]]
     assert moved == [CENTRE]
     assert lines == sorted([*{*shares} - {CENTRE}], key=lambda name: -shares[name])

@@ -315,11 +315,12 @@ def _ends(scope: Scope) -> tuple[int, int] | None:
 
 
 def written_words(session: Session, now: WhatIf) -> Mapping[str, str]:
-    """Moved tolerances as their fields show them, by line; they mean the same in another scene."""
+    """A what-if in words that mean the same in another scene: limits as stated, tolerances as in fields."""
     response, found = session.changed(now), dict[str, str]()
     known = {own.name: own for own in response.contributors}
     for line, words in now.items():
         if line.startswith(LIMITS):
+            found[line] = words
             continue
         name = response.lines[line][0]
         found[line] = _class(words) or _written(known[name], response.drawn_by(name))

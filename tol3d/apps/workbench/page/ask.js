@@ -28,7 +28,7 @@ export async function ask(name, told = {}) {
   return found;
 }
 
-function signed(words) { // as reports show units
+export function signed(words) { // as reports show units
   return words.replace(/(?<=[\s\d])um\b/g, "µm");
 }
 

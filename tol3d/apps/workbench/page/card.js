@@ -1,5 +1,5 @@
 // The card: verdict and distribution of the chosen measure, and what-ifs beside each other.
-import { $, app, ask, button, trouble } from "./ask.js";
+import { $, app, ask, button, signed, trouble } from "./ask.js";
 import { show } from "./app.js";
 import { note, take } from "./sliders.js";
 
@@ -128,7 +128,8 @@ export async function aside() {
     article.innerHTML = card.answer;
     const words = document.createElement("p");
     words.className = "dim";
-    words.textContent = Object.entries(own).map(([line, text]) => `${line} ${text.replace(/^x/, "× ")}`).join(", ");
+    words.textContent = Object.entries(own)
+      .map(([line, text]) => `${line.replace(/^limits: /, "limits of ")} ${signed(text.replace(/^x/, "× "))}`).join(", ");
     const back = button("take", () => takeBack(k)), drop = button("drop", () => dropOne(k));
     article.append(words, back, " ", drop);
     found.push(article);
