@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.moved_values import MovedValues
 from tol3d.analyses.response import Response, Values, response_of
-from tol3d.analyses.results import results_of
+from tol3d.analyses.results import pilot_grids, results_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
 from tol3d.apps.workbench.workspace import WhatIf, digest
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.simulate import load, simulation_of
+from tol3d.statistics.estimates import Grid
 from tol3d.study import Simulation
 from tol3d.study.runs.summary.judged import JudgedMeasure, demand_of
 from tol3d.study.runs.summary.sample import Sample
@@ -60,6 +61,7 @@ class Evaluated:
     _codes: NDArray[np.int8] = field(init=False)
     _pieces: Iterator[tuple[slice, Values]] = field(init=False)
     _sample: Sample | None = None
+    _grids: Mapping[str, Grid] | None = None
 
     def __post_init__(self) -> None:
         count = len(self.kept.deviations)
@@ -96,10 +98,11 @@ class Evaluated:
     def sample(self) -> Sample:
         """Statistics of the builds that are done, as a run of them has."""
         if self._sample is None:
-            rows = slice(0, self.done)
-            positions = {name: own[rows] for name, own in self.kept.positions.items()}
-            found = results_of(self.response, self.kept.deviations[rows], positions, self.values)
-            self._sample = found[self.measure.name]
+            if self._grids is None:
+                rows = slice(0, self.done)
+                positions = {name: own[rows] for name, own in self.kept.positions.items()}
+                self._grids = pilot_grids(self.response, self.kept.deviations[rows], positions, self.values)
+            self._sample = results_of(self.response, self.values, self._grids)[self.measure.name]
         return self._sample
 
     @property
