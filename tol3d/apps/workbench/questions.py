@@ -150,7 +150,7 @@ class Questions:
         session, measure, now = self._asked(asked)
         if not self._is_looked_at(session):
             words = tag("p", "trying which tolerances act …", class_="note")
-            return {"sliders": words, "waits": True, "acting": [], "parts": [], "entries": []}
+            return {"sliders": words, "looks": True, "waits": True, "acting": [], "parts": [], "entries": []}
         run = self._run(str(asked["scene"]), session)
         summary = run.result().found.measures.get(measure) if run.done() and run.exception() is None else None
         lines = session.acting(measure)
