@@ -6,6 +6,7 @@ import { note, take } from "./sliders.js";
 export async function refresh() {
   const wish = ++app.wish;
   app.stopped = false;
+  without("");
   $("reset").disabled = !Object.keys(app.now).length;
   $("aside").disabled = $("reset").disabled || app.beside.length >= 3;
   $("keep").disabled = $("reset").disabled || app.readOnly;
@@ -23,10 +24,12 @@ export async function refresh() {
     app.solid = wish;
     trouble(null);
     if ($("state").textContent.startsWith("compiling")) $("state").textContent = "";
-    $("answer").innerHTML = found.answer;
-    $("chart").innerHTML = found.chart;
     fields(found.written);
-    limits(found.limits);
+    if (found.answer) {
+      $("answer").innerHTML = found.answer;
+      $("chart").innerHTML = found.chart;
+      limits(found.limits);
+    }
     const going = found.done < found.of && !app.stopped;
     $("progress").hidden = !going;
     if (!going) {
@@ -55,9 +58,11 @@ export async function estimate(now) { // one request under way, the latest wish 
   try {
     const found = await ask("estimate", { now });
     if (app.solid < wish) { // nothing newer has come before it
-      $("chart").innerHTML = found.chart;
+      if (found.chart) $("chart").innerHTML = found.chart;
       fields(found.written);
+      without(wish === app.wish ? found.none : "");
       trouble(null);
+      if (found.waits && wish === app.wish) waiting ??= now; // as long as nothing else is asked for
     }
   } catch (error) {
     if (app.solid < wish) trouble(error);
@@ -67,6 +72,14 @@ export async function estimate(now) { // one request under way, the latest wish 
     const next = waiting;
     waiting = null;
     await estimate(next);
+  }
+}
+
+function without(words) { // why there is no estimate, or not yet
+  if (words) $("state").textContent = `estimate: ${words} …`;
+  else if ($("state").textContent.startsWith("estimate:")) {
+    $("state").textContent = "";
+    changesTold();
   }
 }
 
@@ -120,7 +133,7 @@ export async function aside() {
   for (const [k, own] of app.beside.entries()) {
     let card;
     try {
-      card = await ask("card", { now: own });
+      do card = await ask("card", { now: own }); while (!card.answer && wish === app.wish);
     } catch (error) {
       card = { answer: error.message };
     }
