@@ -207,6 +207,19 @@ def test_the_app_is_timed_in_a_browser(capsys: pytest.CaptureFixture[str]) -> No
 
 
 @pytest.mark.slow
+def test_answers_of_the_app_have_a_row_for_each_scene(capsys: pytest.CaptureFixture[str]) -> None:
+    """All of two small scenes' builds are there with the first answer, and no answer takes longer than all together."""
+    importlib.import_module("app").main(["--every", "spur_pair", "two_plates"])
+    _, _, *rows = capsys.readouterr().out.splitlines()
+    for row, scene in zip(rows, ("spur_pair", "two_plates"), strict=True):
+        name, _, trials, opening, solid, builds, estimate, longest = (own.strip() for own in row.strip("|").split("|"))
+        assert name == scene
+        assert 200 <= int(builds) <= int(trials)
+        for own in (opening, solid, estimate, longest):
+            assert re.match(r"\d+\.\d\d \(\d+\.\d\d\)", own), row
+
+
+@pytest.mark.slow
 def test_whole_gears_find_the_backlash_of_thinned_teeth() -> None:
     """(Δs1 + Δs2) cos α of the means (24.5 and 26.5 µm thinner) at the nominal centre distance.
 

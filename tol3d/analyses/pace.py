@@ -5,7 +5,9 @@ from dataclasses import dataclass, field
 from typing import Final
 
 FIRST_PIECE: Final = 64
-"""Builds of the first piece."""
+"""Builds of the first piece, where they are not expected to take longer than a piece."""
+FEWEST: Final = 8
+"""Builds of the first piece of dear ones: of some as much again does not grow with builds, and guesses are high."""
 PIECE: Final = 0.1
 """Seconds to which pieces grow."""
 MOST_GROWTH: Final = 16.0
@@ -28,6 +30,11 @@ class Pace:
 
     count: int = FIRST_PIECE
     measured: Mapping[int, float] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, seconds: float) -> "Pace":
+        """Of builds that are expected to take so many seconds each."""
+        return cls(max(min(int(PIECE / max(seconds, 1e-9)), FIRST_PIECE), FEWEST))
 
     def took(self, builds: int, seconds: float) -> None:
         """Take the time of a piece; the second one is larger or smaller, so as to learn what does not grow with it."""

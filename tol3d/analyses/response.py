@@ -311,7 +311,7 @@ class Response:
         if self.between is None:
             return self._evaluated(trials)
         found, first = list[tuple[Array, Codes]](), 0
-        pace = self.paces.setdefault((self.method is None, self.names), Pace())
+        pace = self.paces.setdefault((self.method is None, self.names), Pace.of(60.0 * self.minutes))
         while first < len(trials):
             last, begun = min(first + pace.count, len(trials)), time.perf_counter()
             found.append(self._evaluated(trials.part(first, last)))
@@ -342,14 +342,14 @@ class Response:
     def pieces(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> Iterator[tuple[slice, Values]]:
         """Measures of builds piece by piece, with the rows of each: the same bits as `values` gives all at once.
 
-        Between two pieces the caller shows what there is, or stops. The first has 64 builds; the others last some
-        0.1 s each, or up to 0.5 s where much of that does not grow with builds.
+        Between two pieces the caller shows what there is, or stops. The first has 64 builds, or fewer where they are
+        dear; the others last some 0.1 s each, or up to 0.5 s where much of that does not grow with builds.
 
         Args:
             deviations, positions: as of `values`.
         """
         builds = np.atleast_2d(np.asarray(deviations, dtype=np.float64))
-        whole, pace, first = replace(self, between=None), Pace(), 0
+        whole, pace, first = replace(self, between=None), Pace.of(60.0 * self.minutes), 0
         while first < len(builds):
             rows = slice(first, min(first + pace.count, len(builds)))
             begun = time.perf_counter()

@@ -16,15 +16,16 @@ from typing import Any, Final
 
 from tol3d.analyses.kept_changes import scene_with
 from tol3d.apps.workbench.builds import build_view
-from tol3d.apps.workbench.card import answer, histogram, sliders, written_words
+from tol3d.apps.workbench.card import answer, histogram, limit_fields, result, sliders, written_words
 from tol3d.apps.workbench.jobs import Job, Jobs
 from tol3d.apps.workbench.place import FolderLock
-from tol3d.apps.workbench.session import AT_ONCE, FEW, Session
+from tol3d.apps.workbench.session import AT_ONCE, FEW, NoEstimate, Session, Turn
 from tol3d.apps.workbench.text_check import checked
 from tol3d.apps.workbench.tree import parts_of, tree
 from tol3d.apps.workbench.workspace import MOST_KEPT, Notes, Workspace, digest, written
 from tol3d.errors import InputError, Tol3dError
 from tol3d.numerics.arrays import Array
+from tol3d.report.html.blocks import tag
 from tol3d.simulate import Overrides, run_scene
 from tol3d.study.runs.run import Run
 
@@ -57,6 +58,7 @@ class Questions:
     sessions: dict[str, Session] = field(default_factory=dict)
     runs: dict[str, "Future[Run]"] = field(default_factory=dict)
     beside: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "shares"))
+    looks: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "looks"))
     _jobs: Jobs = field(init=False)
     scratch: TemporaryDirectory[str] = field(default_factory=partial(TemporaryDirectory, prefix="tol3d-app-"))
 
@@ -100,7 +102,11 @@ class Questions:
         except InputError as error:
             return found | {"problems": _problems(error)}
         measures = [{"name": own.name, "unit": own.unit} for own in session.response.measures]
+        now, dropped = session.still(notes.now)
+        beside = [still for own in notes.beside if (still := session.still(own)[0]) or not own]
+        found["notes"] |= {"now": now, "beside": beside}
         return found | {
+            "dropped": [*dropped],
             "title": session.scene.scene,
             "description": session.scene.description,
             "measures": measures,
@@ -112,33 +118,47 @@ class Questions:
 
     def card(self, asked: Told) -> Told:
         """A measure by the tolerances that are tried, by as many builds as could be evaluated by now."""
+        turn = Turn()
         session, measure, now = self._asked(asked)
         base = session.evaluated(measure, {})
-        base.go_on(AT_ONCE, FEW)
         tried = session.evaluated(measure, now) if now else base
-        if now:
-            tried.go_on(AT_ONCE, min(FEW, tried.count))
-        first = base if base.done < base.count and not now else tried
-        return {
-            "answer": answer(base, tried),
-            "chart": histogram(base, tried, None),
+        both = [base, tried] if tried is not base else [base]  # limits alone evaluate nothing
+        for own in both:
+            own.go_on(turn, FEW)
+        tried.go_on(turn, base.done)  # no more than the scene has: methods know parts of builds from there
+        base.go_on(turn, base.count)
+        tried.go_on(turn, base.done)
+        going = [own for own in both if own.done < own.count] or [tried]
+        told = {
             "written": written_words(session, now),
-            "done": first.done,
-            "of": first.count,
-            "left": round(first.left, 1),
+            "done": sum(own.done for own in going),
+            "of": sum(own.count for own in going),
+            "left": round(sum(own.left for own in going), 1),
         }
+        if not all(own.is_shown for own in both):
+            return told
+        judged = tried.within(session.limits(now))
+        shown = {"answer": answer(base, judged), "result": result(judged), "limits": limit_fields(base, judged)}
+        return told | shown | {"chart": histogram(base, judged, None)}
 
     def estimate(self, asked: Told) -> Told:
-        """The distribution while a tolerance moves: by slopes, on kept builds."""
+        """The distribution while a tolerance moves: by slopes, on kept builds; words on them while they are made."""
+        turn = Turn()
         session, measure, now = self._asked(asked)
-        base = session.evaluated(measure, {})
-        base.go_on(0.0, FEW)
-        chart = histogram(base, None, session.estimate(measure, now) if now else None)
-        return {"chart": chart, "written": written_words(session, now)}
+        base, limits = session.evaluated(measure, {}), session.limits(now)
+        base.within(limits)  # words that are none are refused before anything takes time
+        estimate = session.estimate(measure, now, turn)
+        told = {"written": written_words(session, now)}
+        if isinstance(estimate, NoEstimate):
+            return told | {"none": estimate.words, "waits": estimate.is_coming}
+        return told | {"chart": histogram(base.within(limits), None, estimate if session.changes(now) else None)}
 
     def sliders(self, asked: Told) -> Told:
         """A slider for each tolerance that acts on a measure; by shares as soon as a run knows them."""
         session, measure, now = self._asked(asked)
+        if not self._is_looked_at(session):
+            words = tag("p", "trying which tolerances act …", class_="note")
+            return {"sliders": words, "looks": True, "waits": True, "acting": [], "parts": [], "entries": []}
         run = self._run(str(asked["scene"]), session)
         summary = run.result().found.measures.get(measure) if run.done() and run.exception() is None else None
         lines = session.acting(measure)
@@ -160,7 +180,7 @@ class Questions:
         rows = dict[str, tuple[Array, Mapping[str, Array] | None]]()
         if "mean" in asked.get("builds", ()):
             rows["mean"] = (session.changed(now).mean, None)
-        evaluated = session.evaluated(measure, now)
+        evaluated = session.evaluated(measure, now).within(session.limits(now))
         if "worst" in asked.get("builds", ()) and evaluated.done:
             rows["worst"] = evaluated.trial(evaluated.worst)
         if (trial := asked.get("trial")) is not None:
@@ -233,7 +253,7 @@ class Questions:
     def keep(self, asked: Told) -> Told:
         """Keep moved tolerances in the scene's text: the difference first, then the file."""
         session, _, now = self._asked(asked)
-        text = scene_with(session.response, session.scene, session.changes(now)).text
+        text = scene_with(session.response, session.scene, session.changes(now), session.limits(now)).text
         before = session.content.decode("utf-8")
         if not asked.get("write"):
             return {"diff": _difference(before, text, session.path.name), "digest": session.digest}
@@ -279,6 +299,20 @@ class Questions:
         session = self.session(str(asked["scene"]))
         return session, session.measure(str(asked.get("measure", ""))).name, _changes(asked.get("now"))
 
+    def _is_looked_at(self, session: Session) -> bool:
+        """True if it is known what acts: of many measures dozens of builds tell, which are made beside."""
+        first, *_ = session.response.measures
+        if not session.simulation.method.threads:
+            session.acting(first.name)
+            return True
+        if session.look is None:
+            session.look = self.looks.submit(session.acting, first.name)
+        try:
+            session.look.result(timeout=AT_ONCE)
+        except TimeoutError:
+            return False
+        return True
+
     def _run(self, name: str, session: Session) -> "Future[Run]":
         """A run of the scene, which knows shares; it is made once for each state of the file."""
         key = f"{name}-{session.digest[:16]}"
@@ -295,7 +329,8 @@ class Questions:
 
     def close(self) -> None:
         """Let its threads end and remove what it made for itself."""
-        self.beside.shutdown(wait=True, cancel_futures=True)
+        for own in (self.looks, self.beside):
+            own.shutdown(wait=True, cancel_futures=True)
         self.scratch.cleanup()
 
 

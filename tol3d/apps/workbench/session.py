@@ -5,40 +5,88 @@ second. So nothing has to be stopped when a tolerance moves again: the next requ
 """
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
+from copy import copy
 from dataclasses import dataclass, field
+from functools import cached_property, partial
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.moved_values import MovedValues
+from tol3d.analyses.pace import FEWEST, LONGEST, Pace
 from tol3d.analyses.response import Response, Values, response_of
-from tol3d.analyses.results import results_of
+from tol3d.analyses.results import pilot_grids, results_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
+from tol3d.analyses.stated_classes import classes_of, sizes_of
+from tol3d.analyses.stated_limits import OtherLimits, limited, limits_of_text
 from tol3d.apps.workbench.workspace import WhatIf, digest
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.simulate import load, simulation_of
+from tol3d.statistics.estimates import Grid
 from tol3d.study import Simulation
-from tol3d.study.runs.summary.judged import JudgedMeasure, demand_of
+from tol3d.study.runs.summary.judged import Accepted, JudgedMeasure, demand_of
 from tol3d.study.runs.summary.sample import Sample
 from tol3d.study.system import nominal_build
 from tol3d.study.system.measure import Measure
 from tol3d.study.trials.draws import KeptDraws
+from tol3d.units import Quantity
 
-AT_ONCE: Final = 0.35
-"""Time that a request evaluates builds [s]."""
+Own = TypeVar("Own")
+AT_ONCE: Final = 0.3
+"""Time that an answer takes for builds or slopes, where these have pieces so short [s]: another question may wait."""
+LIMITS: Final = "limits: "
+"""Begins the key of a what-if that changes limits, with the measure's name; no line of a scene has a colon."""
 MOST_BUILDS: Final = 100_000
 """Builds of a card; a run has all that the study asks for."""
 ESTIMATED: Final = 2000
-"""Builds of an estimate, where they take no longer than AT_ONCE; else FEW."""
+"""Builds of an estimate, where their slopes do not take too long."""
 FEW: Final = 200
+"""Builds of which a card says something."""
+SLOPES_WITHIN: Final = 1.0
+"""Time in which slopes at each build of an estimate are there, if a tolerance has three components [s], about."""
+SLOPES_OF: Final = 6
+"""Builds of such a slope."""
+LONGEST_SLOPES: Final = 10.0
+"""Time of slopes of a tolerance from which on there is no estimate [s]."""
 KEPT_CARDS: Final = 12
 """Measures and what-ifs whose builds are kept."""
+
+
+@dataclass(frozen=True)
+class NoEstimate:
+    """Words on an estimate that is not there.
+
+    Args:
+        words: what it waits for, or the reason why there is none.
+        is_coming: true if asking again helps.
+    """
+
+    words: str
+    is_coming: bool = True
+
+
+@dataclass
+class Turn:
+    """The time of an answer for builds and slopes: one piece of them, and others that end in time.
+
+    Args:
+        until: its end, on the clock of `time.perf_counter` [s].
+    """
+
+    until: float = field(default_factory=lambda: time.perf_counter() + AT_ONCE)
+    _taken: bool = False
+
+    def has(self, seconds: float) -> bool:
+        """True if a piece of about so many seconds may begin."""
+        first, self._taken = not self._taken, True
+        return first or time.perf_counter() + seconds < self.until
 
 
 @dataclass(eq=False)
@@ -58,13 +106,16 @@ class Evaluated:
     pace: float = 0.0
     _values: Array = field(init=False)
     _codes: NDArray[np.int8] = field(init=False)
-    _pieces: Iterator[tuple[slice, Values]] = field(init=False)
+    _asked: Pace = field(init=False)
+    _piece: float = 0.0
     _sample: Sample | None = None
+    _grids: Mapping[str, Grid] | None = None
+    _measure: Measure | None = None
 
     def __post_init__(self) -> None:
         count = len(self.kept.deviations)
         self._values, self._codes = np.full((count, 1), np.nan), np.zeros((count, 1), dtype=np.int8)
-        self._pieces = self.response.pieces(self.kept.deviations, self.kept.positions)
+        self._asked = Pace.of(60.0 * self.response.minutes)
 
     @property
     def count(self) -> int:
@@ -77,15 +128,23 @@ class Evaluated:
         texts = self.response.simulation.system.statuses.texts
         return Values(self._values[: self.done], self._codes[: self.done], texts)
 
-    def go_on(self, seconds: float, at_least: int = 1) -> None:
-        """Evaluate more builds, for some time [s], and until there are so many."""
-        until = time.perf_counter() + seconds
-        while self.done < self.count and (time.perf_counter() < until or self.done < at_least):
-            begun = time.perf_counter()
-            rows, values = next(self._pieces)
+    def go_on(self, turn: Turn, most: int) -> None:
+        """Evaluate more builds, up to so many, while it is their turn."""
+        most, asked = min(most, self.count), self._asked
+        while self.done < most and turn.has(self._piece):
+            in_time = max(int(LONGEST / self.pace), FEWEST) if self.pace else asked.count
+            rows, begun = slice(self.done, min(self.done + min(asked.count, in_time), most)), time.perf_counter()
+            positions = {name: own[rows] for name, own in self.kept.positions.items()}
+            values = self.response.values(self.kept.deviations[rows], positions)
             self._values[rows], self._codes[rows] = values.values, values.codes
-            self.pace = (time.perf_counter() - begun) / (rows.stop - rows.start)
-            self.done, self._sample = rows.stop, None
+            self._piece = time.perf_counter() - begun
+            asked.took(rows.stop - rows.start, self._piece)
+            self.done, self._sample, self.pace = rows.stop, None, self._piece / (rows.stop - rows.start)
+
+    @property
+    def is_shown(self) -> bool:
+        """True if there are as many builds as a card needs."""
+        return self.done >= min(FEW, self.count)
 
     @property
     def left(self) -> float:
@@ -96,22 +155,48 @@ class Evaluated:
     def sample(self) -> Sample:
         """Statistics of the builds that are done, as a run of them has."""
         if self._sample is None:
-            rows = slice(0, self.done)
-            positions = {name: own[rows] for name, own in self.kept.positions.items()}
-            found = results_of(self.response, self.kept.deviations[rows], positions, self.values)
+            if self._grids is None:
+                rows = slice(0, self.done)
+                positions = {name: own[rows] for name, own in self.kept.positions.items()}
+                self._grids = pilot_grids(self.response, self.kept.deviations[rows], positions, self.values)
+            found = results_of(self.response, self.values, self._grids, measures=[self.measure])
             self._sample = found[self.measure.name]
         return self._sample
 
     @property
     def measure(self) -> Measure:
         """The measure."""
-        return self.response.measures[0]
+        return self._measure or self.response.measures[0]
+
+    def within(self, limits: Sequence[OtherLimits]) -> "Evaluated":
+        """The builds that are done, judged by other limits: nothing is evaluated.
+
+        Raises:
+            InputError: limits that cannot be.
+        """
+        (measure,) = limited(self.response.measures, limits)
+        if measure is self.measure:
+            return self
+        if self.done:
+            self.sample  # noqa: B018 - knows the pilots
+        other = copy(self)
+        other._measure, other._sample = measure, None
+        return other
 
     @property
     def judged(self) -> JudgedMeasure:
         """Its verdict, as a run's."""
-        limited = self.measure.lower_limit is not None or self.measure.upper_limit is not None
-        return JudgedMeasure.by(self.sample, demand_of(self.response.simulation.study.accept_ppk), limited=limited)
+        return JudgedMeasure.by(self.sample, self.demand, limited=self.limited)
+
+    @property
+    def limited(self) -> bool:
+        """True if the measure has a limit."""
+        return self.measure.lower_limit is not None or self.measure.upper_limit is not None
+
+    @property
+    def demand(self) -> Accepted:
+        """Demand of the study on the measure."""
+        return demand_of(self.response.simulation.study.accept_ppk)
 
     def trial(self, number: int) -> tuple[Array, Mapping[str, Array]]:
         """Deviations of a build (components,) [mm, rad, K], and its positions."""
@@ -143,6 +228,7 @@ class Session:
         path: of its file.
         content: of the file, as it was read.
         scene, simulation, response: what it means.
+        look: which tries what acts on its measures.
     """
 
     path: Path
@@ -150,6 +236,7 @@ class Session:
     scene: Scene
     simulation: Simulation
     response: Response
+    look: "Future[tuple[str, ...]] | None" = None
     _kept: KeptDraws | None = None
     _evaluated: dict[tuple[str, tuple[tuple[str, str], ...]], Evaluated] = field(default_factory=dict)
     _moved: dict[str, MovedValues] = field(default_factory=dict)
@@ -185,20 +272,53 @@ class Session:
         return self._kept
 
     def changes(self, now: WhatIf) -> list[Change]:
-        """Changes that were made by hand.
+        """Changes of tolerances that were made by hand.
 
         Raises:
             InputError: no such tolerance, or no such value of it.
         """
-        return [self._change(line, words) for line, words in now.items()]
+        return [self._change(line, words) for line, words in now.items() if not line.startswith(LIMITS)]
+
+    def limits(self, now: WhatIf) -> list[OtherLimits]:
+        """Limits of measures that were changed by hand.
+
+        Raises:
+            InputError: no such measure, or no such limits of it.
+        """
+        stated = {key.removeprefix(LIMITS): words for key, words in now.items() if key.startswith(LIMITS)}
+        return [_in_a_page("--limits", limits_of_text, self.response, f"{own}={text}") for own, text in stated.items()]
 
     def _change(self, line: str, words: str) -> Change:
-        of, option = (factor_of, "--factor") if words.startswith("x") else (change_of, "--set")
-        text = f"{line}={words.removeprefix('x')}"
-        try:
-            return of(self.response, text)
-        except InputError as error:  # the page has no options
-            raise InputError(str(error).removeprefix(f"{option} {text!r}: ").removeprefix(f"{option}: ")) from None
+        if words.startswith("x"):
+            return _in_a_page("--factor", factor_of, self.response, f"{line}={words.removeprefix('x')}")
+        read = partial(change_of, sizes=self.sizes)
+        return _in_a_page("--set", read, self.response, f"{line}={words}")
+
+    @cached_property
+    def sizes(self) -> Mapping[str, Quantity]:
+        """Nominal sizes by line, at which tolerance classes are read."""
+        return sizes_of(self.scene, self.simulation.lines)
+
+    @cached_property
+    def classes(self) -> Mapping[str, str]:
+        """Tolerance classes of the scene by line."""
+        return classes_of(self.scene, self.simulation.lines)
+
+    def still(self, now: WhatIf) -> tuple[WhatIf, Sequence[str]]:
+        """Those of a what-if's changes that the scene still allows, and sentences on the others."""
+        known, dropped = dict[str, str](), list[str]()
+        for line, words in now.items():
+            name = line.removeprefix(LIMITS)
+            if name not in (self.response.names if line.startswith(LIMITS) else self.response.lines):
+                dropped.append(f"{name} is no longer in the scene: its move was dropped.")
+                continue
+            try:
+                self.changed({line: words})
+                limited(self.response.measures, self.limits({line: words}))
+                known[line] = words
+            except InputError as error:
+                dropped.append(f"{name} can no longer be {words.replace('x', '× ')}: its move was dropped ({error}).")
+        return known, dropped
 
     def changed(self, now: WhatIf) -> Response:
         """The response with other tolerances.
@@ -206,15 +326,16 @@ class Session:
         Raises:
             InputError: they cannot be.
         """
-        return changed(self.response, self.changes(now)) if now else self.response
+        changes = self.changes(now)
+        return changed(self.response, changes) if changes else self.response
 
     def evaluated(self, measure: str, now: WhatIf) -> Evaluated:
-        """Builds of a measure by some tolerances, as far as they are there.
+        """Builds of a measure by some tolerances, as far as they are there; `within` judges them by other limits.
 
         Raises:
             InputError: no such measure, or tolerances that cannot be.
         """
-        key = (measure, tuple(sorted(now.items())))
+        key = (measure, tuple(sorted((line, words) for line, words in now.items() if not line.startswith(LIMITS))))
         found = self._evaluated.pop(key, None)
         if found is None:
             response = self.changed(now)
@@ -225,20 +346,32 @@ class Session:
             del self._evaluated[next(own for own in self._evaluated if own[1] or len(self._evaluated) > KEPT_CARDS)]
         return found
 
-    def estimate(self, measure: str, now: WhatIf) -> Array:
+    def estimate(self, measure: str, now: WhatIf, turn: Turn) -> Array | NoEstimate:
         """Values of some builds by other tolerances, by slopes alone, NaN where one has none.
+
+        Args:
+            measure: its name.
+            now: the other tolerances.
+            turn: the time for builds and slopes; the next question goes on with what is not ready then.
 
         Raises:
             InputError: as `evaluated`.
         """
+        changed, base = self.changed(now), self.evaluated(measure, {})
+        base.go_on(turn, FEW)
+        if not base.is_shown:
+            return NoEstimate(f"builds: {base.done} of {FEW}")
         if measure not in self._moved:
-            base = self.evaluated(measure, {})
-            base.go_on(AT_ONCE, FEW)
-            count = min(ESTIMATED if base.done >= ESTIMATED else FEW, base.done)
-            kept = self.response.kept(count)
-            self._moved[measure] = MovedValues(self.response.of(measure), kept, base.values.values[:count])
+            in_time = int(SLOPES_WITHIN / max(SLOPES_OF * base.pace, 1e-9))
+            count = min(max(FEW, min(ESTIMATED, in_time)), base.done)
+            values = base.values.values[:count]
+            self._moved[measure] = MovedValues(base.response, self.response.kept(count), values, LONGEST_SLOPES)
         moved = self._moved[measure]
-        return np.asarray(moved.of(moved.kept.redrawn(self.changed(now).draws))[:, 0])
+        redrawn = moved.kept.redrawn(changed.draws)
+        for name in moved.moved(redrawn):
+            if waits := _made(moved, name, turn):
+                return waits
+        return np.asarray(moved.of(redrawn)[:, 0])
 
     def acting(self, measure: str) -> tuple[str, ...]:
         """Lines of the scene whose contributors act on a measure.
@@ -281,3 +414,27 @@ class Session:
         """
         if not self.response.components:
             raise InputError("expected a scene with tolerances, got none: all its builds are the nominal one")
+
+
+def _in_a_page(option: str, read: Callable[[Response, str], Own], response: Response, text: str) -> Own:
+    """A change read as from a command line, which a page does not have."""
+    try:
+        return read(response, text)
+    except InputError as error:
+        raise InputError(str(error).removeprefix(f"{option} {text!r}: ").removeprefix(f"{option}: ")) from None
+
+
+def _made(moved: MovedValues, name: str, turn: Turn) -> NoEstimate | None:
+    """Slopes by a contributor, as far as it is their turn; None where they are there and of use."""
+    steps, words, took = moved.steps(name), f"slopes of {name}", 0.0
+    while name not in moved.known:
+        if not turn.has(took):
+            return NoEstimate(words)
+        begun = time.perf_counter()
+        if step := next(steps, None):
+            words = f"{step.part} of {name}: {step.done} of {step.of} builds"
+        took = time.perf_counter() - begun
+    slopes = moved.known[name]
+    if slopes.will_do or slopes.at_each_build:
+        return None
+    return NoEstimate(f"{name} has no estimate in time, release the slider for builds", is_coming=False)

@@ -48,6 +48,7 @@ WORDS: Final[Mapping[str, Mapping[str, Word]]] = {
     "what_if": {
         "set": VALUES,
         "factor": VALUES,
+        "limits": VALUES,
         "measure": TEXT,
         "trials": WHOLE,
         "draws": WHOLE,

@@ -162,12 +162,15 @@ def is_drawn(value: Any) -> bool:
     return isinstance(value, list | tuple)
 
 
-def _is_series(value: str) -> bool:
+def _is(read: Callable[[str], object], text: str) -> bool:
     try:
-        din_3967.series(value)
+        read(text)
     except InputError:
         return False
     return True
+
+
+_is_series, _is_field = partial(_is, din_3967.series), partial(_is, din_3967.field)
 
 
 def drawn_law(value: Any) -> DistributionSpec:
@@ -295,6 +298,29 @@ def limits_written(text: str) -> tuple[Quantity, Quantity] | None:
         return _written(value, "")
     except PydanticCustomError as error:
         raise InputError(str(error)) from None
+
+
+def in_class(spec: DistributionSpec, tolerance_class: str, size: Quantity) -> DistributionSpec:
+    """Limits on a drawing as those of a class of ISO 286, by the law that they have.
+
+    Args:
+        spec: limits as a drawing writes them.
+        tolerance_class: such as H7.
+        size: nominal.
+    """
+    drawn = spec.drawn if isinstance(spec.drawn, dict) else {}
+    fit = {"fit": tolerance_class, "of": drawn.get("of", str(size))}
+    written = {"din_3964": tolerance_class} if "din_3964" in drawn and _is_field(tolerance_class) else fit
+    written |= {"law": drawn["law"]} if "law" in drawn else {}
+    between: LimitLaw = spec.between
+    return between.between(*_limits(FitSpec.model_validate(fit))).as_drawn(written, between)
+
+
+def tolerated_size(written: Any) -> Quantity | None:
+    """The size of limits: 32 mm of {fit: H7, of: 32 mm}, 40.1 mm of 40.1 mm +0.12/0; None where none is stated."""
+    if isinstance(written, dict) and "of" in written and written.keys() & {"fit", "general"}:
+        return Quantity.parse(written["of"])
+    return nominal_size(written)
 
 
 def nominal_size(written: Any) -> Quantity | None:

@@ -15,7 +15,6 @@ from tol3d.statistics.estimates.grid import BINS
 from tol3d.statistics.estimates.lazy import quick_products
 from tol3d.statistics.estimates.variance_shares import Products, plain_products
 from tol3d.study.system.breakdown import Breakdown
-from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.dependent import DependentlyJudged
 from tol3d.study.system.draw import Each, JudgedDraw
 from tol3d.study.system.measure import Measure
@@ -80,7 +79,7 @@ class Disagreement:
         return Disagreement(merged(self.sums, other.sums), further.largest, further.trial)
 
 
-PILOT_TRIALS = 64  # the study's first trials; they give sigma to 9 %, and a spread that the stack-up does not see
+PILOT_TRIALS = 64  # the study's first trials; they give sigma to 9 %
 GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both methods: bins of 1.8e-4 sigma, 1.3 nm
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
 MOST_COUNTED = 4095  # of a measure that counts
@@ -96,7 +95,7 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
         pilot: columns of the study's first PILOT_TRIALS trials, for any number of trials.
     """
     grids = {
-        measure.name: grid_of(measure, system.closed_form(measure), _values(system, measure, pilot))
+        measure.name: grid_of(measure, _values(system, measure, pilot))
         for measure in system.measures
         if measure.take != "curve"
     }
@@ -105,7 +104,7 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
         if measure.take == "curve":
             curves = _values(system, measure, pilot)
             for end in judged_ends(measure):
-                grids[end_name(measure.name, end)] = grid_of(measure, None, [ENDS[end](curve) for curve in curves])
+                grids[end_name(measure.name, end)] = grid_of(measure, [ENDS[end](curve) for curve in curves])
     return grids
 
 
@@ -130,14 +129,15 @@ def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[st
     return {grid_name(measure.name, k): Grid.empty(0.0, span / ORDER_BINS, ORDER_BINS) for k, span in enumerate(spans)}
 
 
-def grid_of(measure: Measure, form: ClosedForm | None, columns: Sequence[Array]) -> Grid:
-    """The empty grid of a measure, by its closed form and the pilot's values by each method (trials,), in its unit."""
+def grid_of(measure: Measure, columns: Sequence[Array]) -> Grid:
+    """The empty grid of a measure, by the pilot's values by each method (trials,), in its unit.
+
+    By values alone, so that it is the same where other tolerances are tried as where a scene states them.
+    """
     if measure.unit in FACTORS["count"]:
         return CountGrid.up_to(MOST_COUNTED)
-    spans = [(form.mean * measure.per_internal, form.sigma * measure.per_internal)] if form else []
-    for values in columns:
-        good = values[~np.isnan(values)]
-        spans += [(float(good.mean()), float(good.std()))] if len(good) else []
+    known = [good for values in columns if len(good := values[~np.isnan(values)])]
+    spans = [(float(good.mean()), float(good.std())) for good in known]
     reach = [max(GRID_SIGMAS * sigma, LEAST_SPAN * measure.per_internal) for _, sigma in spans]
     lower = min(mean - half for (mean, _), half in zip(spans, reach, strict=True))
     upper = max(mean + half for (mean, _), half in zip(spans, reach, strict=True))

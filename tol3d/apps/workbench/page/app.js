@@ -2,7 +2,7 @@
 import { $, app, ask, trouble } from "./ask.js";
 import { aside, refresh } from "./card.js";
 import "./jobs.js";
-import { slide, take, undo } from "./sliders.js";
+import { note, slide, take, undo } from "./sliders.js";
 import "./stage.js";
 import { editor, keep, marks, problems, save, showText } from "./text.js";
 
@@ -37,6 +37,8 @@ export async function open(name) {
   }
   app.now = found.notes.now;
   app.beside = found.notes.beside;
+  $("dropped").textContent = found.dropped.join(" ");
+  $("dropped").hidden = !found.dropped.length;
   $("tree").innerHTML = found.tree;
   $("turning").hidden = !found.turns;
   $("turn").value = 0;

@@ -1,11 +1,12 @@
 // The card: verdict and distribution of the chosen measure, and what-ifs beside each other.
-import { $, app, ask, button, trouble } from "./ask.js";
+import { $, app, ask, button, signed, trouble } from "./ask.js";
 import { show } from "./app.js";
-import { note } from "./sliders.js";
+import { note, take } from "./sliders.js";
 
 export async function refresh() {
   const wish = ++app.wish;
   app.stopped = false;
+  without("");
   $("reset").disabled = !Object.keys(app.now).length;
   $("aside").disabled = $("reset").disabled || app.beside.length >= 3;
   $("keep").disabled = $("reset").disabled || app.readOnly;
@@ -23,12 +24,18 @@ export async function refresh() {
     app.solid = wish;
     trouble(null);
     if ($("state").textContent.startsWith("compiling")) $("state").textContent = "";
-    $("answer").innerHTML = found.answer;
-    $("chart").innerHTML = found.chart;
     fields(found.written);
+    if (found.answer) {
+      $("answer").innerHTML = found.answer;
+      $("chart").innerHTML = found.chart;
+      limits(found.limits);
+    }
     const going = found.done < found.of && !app.stopped;
     $("progress").hidden = !going;
-    if (!going) break;
+    if (!going) {
+      $("result").textContent = found.result; // heard once, when all is there
+      break;
+    }
     $("progress").querySelector("progress").value = found.done / found.of;
     $("progress").querySelector("span").textContent = `${found.done} of ${found.of} trials, ${found.left} s left`;
   }
@@ -51,9 +58,11 @@ export async function estimate(now) { // one request under way, the latest wish 
   try {
     const found = await ask("estimate", { now });
     if (app.solid < wish) { // nothing newer has come before it
-      $("chart").innerHTML = found.chart;
+      if (found.chart) $("chart").innerHTML = found.chart;
       fields(found.written);
+      without(wish === app.wish ? found.none : "");
       trouble(null);
+      if (found.waits && wish === app.wish) waiting ??= now; // as long as nothing else is asked for
     }
   } catch (error) {
     if (app.solid < wish) trouble(error);
@@ -66,16 +75,56 @@ export async function estimate(now) { // one request under way, the latest wish 
   }
 }
 
+function without(words) { // why there is no estimate, or not yet
+  if (words) $("state").textContent = `estimate: ${words} …`;
+  else if ($("state").textContent.startsWith("estimate:")) {
+    $("state").textContent = "";
+    changesTold();
+  }
+}
+
 export function forget() { // what waits to be estimated
   waiting = null;
 }
 
 function fields(written) {
-  for (const [line, words] of Object.entries(written ?? {})) {
-    const field = [...document.querySelectorAll("#sliders input[type=text]")].find((own) => own.dataset.line === line);
-    if (field && field !== document.activeElement) field.value = words;
+  for (const own of document.querySelectorAll("#sliders input[type=text]")) {
+    if (own !== document.activeElement) own.value = (written ?? {})[own.dataset.line] ?? own.dataset.scene;
   }
 }
+
+// limits ------------------------------------------------------------------------------------------
+
+const LIMITS = ["lower_limit", "upper_limit"];
+
+function limits(told) {
+  for (const name of LIMITS) {
+    const own = $(name), { now, scene, is } = told[name];
+    own.disabled = !is;
+    own.dataset.scene = scene;
+    own.classList.toggle("moved", now !== scene);
+    if (own !== document.activeElement) own.value = now;
+  }
+}
+
+$("limits").addEventListener("change", async () => {
+  const key = `limits: ${app.measure}`, now = { ...app.now };
+  const stated = LIMITS.map((name) => {
+    const text = $(name).value.trim();
+    return text === $(name).dataset.scene ? "" : text;
+  });
+  delete now[key];
+  if (stated.some(Boolean)) now[key] = stated.join("..");
+  try {
+    await ask("estimate", { now });
+  } catch (error) {
+    $("limits-wrong").textContent = error.message;
+    $("limits-wrong").hidden = false;
+    return;
+  }
+  $("limits-wrong").hidden = true;
+  await take(now);
+});
 
 // what-ifs beside each other ----------------------------------------------------------------------
 
@@ -84,7 +133,7 @@ export async function aside() {
   for (const [k, own] of app.beside.entries()) {
     let card;
     try {
-      card = await ask("card", { now: own });
+      do card = await ask("card", { now: own }); while (!card.answer && wish === app.wish);
     } catch (error) {
       card = { answer: error.message };
     }
@@ -92,7 +141,8 @@ export async function aside() {
     article.innerHTML = card.answer;
     const words = document.createElement("p");
     words.className = "dim";
-    words.textContent = Object.entries(own).map(([line, text]) => `${line} ${text.replace(/^x/, "× ")}`).join(", ");
+    words.textContent = Object.entries(own)
+      .map(([line, text]) => `${line.replace(/^limits: /, "limits of ")} ${signed(text.replace(/^x/, "× "))}`).join(", ");
     const back = button("take", () => takeBack(k)), drop = button("drop", () => dropOne(k));
     article.append(words, back, " ", drop);
     found.push(article);

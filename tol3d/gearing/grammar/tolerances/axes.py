@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 from typing_extensions import override
@@ -12,7 +12,7 @@ from tol3d.gearing.grammar.moves import BevelMeshSpec, MeshSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, MeshToleranceSpec, Nominal
 from tol3d.scene.bases import MoveSpec, PartSpec
 from tol3d.scene.entry import Entry
-from tol3d.units import Dimension
+from tol3d.units import Dimension, Quantity
 
 
 class CentreDistanceSpec(MeshToleranceSpec):
@@ -26,11 +26,15 @@ class CentreDistanceSpec(MeshToleranceSpec):
     kind: Literal["centre_distance"]
 
     @override
-    def size(self, standard: str, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> float | None:
+    def nominal_size(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Quantity | None:
         mesh = moves.get(self.of)
-        if standard != "din_3964" or not isinstance(mesh, MeshSpec) or mesh.centre_distance is None:
-            return None
-        return mesh.centre_distance.internal
+        stated = mesh.centre_distance if isinstance(mesh, MeshSpec) else None
+        return super().nominal_size(parts, moves) or stated
+
+    @override
+    def size(self, standard: str, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> float | None:
+        nominal = self.nominal_size(parts, moves) if standard == "din_3964" else None
+        return None if nominal is None else nominal.internal
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """The driven axis lies further from the driver's."""
