@@ -5,7 +5,7 @@ second. So nothing has to be stopped when a tolerance moves again: the next requ
 """
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,14 +18,13 @@ from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.moved_values import MovedValues
 from tol3d.analyses.pace import FEWEST, LONGEST, Pace
 from tol3d.analyses.response import Response, Values, response_of
-from tol3d.analyses.results import pilot_grids, results_of
+from tol3d.analyses.results import pilots_of, results_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
 from tol3d.apps.workbench.workspace import WhatIf, digest
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.simulate import load, simulation_of
-from tol3d.statistics.estimates import Grid
 from tol3d.study import Simulation
 from tol3d.study.runs.summary.judged import JudgedMeasure, demand_of
 from tol3d.study.runs.summary.sample import Sample
@@ -101,7 +100,7 @@ class Evaluated:
     _asked: Pace = field(init=False)
     _piece: float = 0.0
     _sample: Sample | None = None
-    _grids: Mapping[str, Grid] | None = None
+    _pilots: Sequence[Array] = ()
 
     def __post_init__(self) -> None:
         count = len(self.kept.deviations)
@@ -146,11 +145,11 @@ class Evaluated:
     def sample(self) -> Sample:
         """Statistics of the builds that are done, as a run of them has."""
         if self._sample is None:
-            if self._grids is None:
-                rows = slice(0, self.done)
-                positions = {name: own[rows] for name, own in self.kept.positions.items()}
-                self._grids = pilot_grids(self.response, self.kept.deviations[rows], positions, self.values)
-            self._sample = results_of(self.response, self.values, self._grids)[self.measure.name]
+            rows = slice(0, self.done)
+            positions = {name: own[rows] for name, own in self.kept.positions.items()}
+            trials = (self.response, self.kept.deviations[rows], positions, self.values)
+            self._pilots = self._pilots or pilots_of(*trials)  # once: a sample has at least FEW builds, or all
+            self._sample = results_of(*trials, pilots=self._pilots)[self.measure.name]
         return self._sample
 
     @property
