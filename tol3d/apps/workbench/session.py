@@ -41,11 +41,11 @@ ESTIMATED: Final = 2000
 FEW: Final = 200
 """Builds of which a card says something."""
 SLOPES_WITHIN: Final = 1.0
-"""Time in which slopes at each build of an estimate are there, if a tolerance has three components [s], about."""
+"""Time that slopes at each build should take [s]: it decides how many builds an estimate has."""
 SLOPES_OF: Final = 6
-"""Builds of such a slope."""
+"""Builds of the slopes at a build: two for each component of a tolerance with three."""
 LONGEST_SLOPES: Final = 10.0
-"""Time of slopes of a tolerance from which on there is no estimate [s]."""
+"""Time of slopes of a tolerance beyond which there is no estimate [s]."""
 KEPT_CARDS: Final = 12
 """Measures and what-ifs whose builds are kept."""
 
@@ -360,4 +360,4 @@ def _made(moved: MovedValues, name: str, turn: Turn) -> NoEstimate | None:
     slopes = moved.known[name]
     if slopes.will_do or slopes.at_each_build:
         return None
-    return NoEstimate(f"{name} has no estimate in time, release the slider for builds", is_coming=False)
+    return NoEstimate(f"slopes of {name} take too long; release the slider to simulate", is_coming=False)
