@@ -301,7 +301,7 @@ def test_slopes_that_take_too_long_are_told_and_not_waited_for(own: Questions, m
     now = {"wheel eccentricity": "x1.5"}
     while (told := own.estimate(asked(now))).get("waits"):
         pass
-    assert told["none"] == "wheel eccentricity has no estimate in time, release the slider for builds"
+    assert told["none"] == "slopes of wheel eccentricity take too long; release the slider to simulate"
     assert "chart" not in told
     assert np.isfinite(estimated(own, {"wheel tooth thickness": "x1.5"})).all()
 

@@ -20,7 +20,7 @@ from tol3d.analyses.limit_state import LimitState, Side
 from tol3d.analyses.rare_events import DRAWS, rare_event
 from tol3d.analyses.rates import rates_of
 from tol3d.analyses.response import Response
-from tol3d.analyses.results import pilot_grids, results_of
+from tol3d.analyses.results import results_of
 from tol3d.analyses.stated_changes import Change, changed, known, told
 from tol3d.analyses.stated_limits import OtherLimits, limited
 from tol3d.errors import InputError
@@ -204,7 +204,7 @@ def what_if(
             drawn = own.drawn(count)
             read = own.values(*drawn)
             sampled[word] = np.where(read.seated, read.values, np.nan)
-            results[word] = results_of(own, read, pilot_grids(own, *drawn, read), measures=judged[word])
+            results[word] = results_of(own, *drawn, read, measures=judged[word])
     found = {}
     for k, one in enumerate(asked.measures):
         values = {word: own[:, k] for word, own in sampled.items()}

@@ -33,7 +33,11 @@ def classes_of(scene: Scene, lines: Iterable[Line]) -> Mapping[str, str]:
     entries = {line.name: scene.tolerances[line.entries[0]] for line in lines if line.entries}
     drawn = {name: spec.distribution.drawn for name, spec in entries.items() if isinstance(spec, ToleranceSpec)}
     return {
-        name: own[key] for name, own in drawn.items() if isinstance(own, dict) for key in ("fit", "din_3964") if key in own
+        name: own[key]
+        for name, own in drawn.items()
+        if isinstance(own, dict)
+        for key in ("fit", "din_3964")
+        if key in own
     }
 
 

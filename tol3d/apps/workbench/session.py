@@ -20,7 +20,7 @@ from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.moved_values import MovedValues
 from tol3d.analyses.pace import FEWEST, LONGEST, Pace
 from tol3d.analyses.response import Response, Values, response_of
-from tol3d.analyses.results import pilot_grids, results_of
+from tol3d.analyses.results import pilots_of, results_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
 from tol3d.analyses.stated_classes import classes_of, sizes_of
 from tol3d.analyses.stated_limits import OtherLimits, limited, limits_of_text
@@ -29,7 +29,6 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.simulate import load, simulation_of
-from tol3d.statistics.estimates import Grid
 from tol3d.study import Simulation
 from tol3d.study.runs.summary.judged import Accepted, JudgedMeasure, demand_of
 from tol3d.study.runs.summary.sample import Sample
@@ -50,11 +49,11 @@ ESTIMATED: Final = 2000
 FEW: Final = 200
 """Builds of which a card says something."""
 SLOPES_WITHIN: Final = 1.0
-"""Time in which slopes at each build of an estimate are there, if a tolerance has three components [s], about."""
+"""Time that slopes at each build should take [s]: it decides how many builds an estimate has."""
 SLOPES_OF: Final = 6
-"""Builds of such a slope."""
+"""Builds of the slopes at a build: two for each component of a tolerance with three."""
 LONGEST_SLOPES: Final = 10.0
-"""Time of slopes of a tolerance from which on there is no estimate [s]."""
+"""Time of slopes of a tolerance beyond which there is no estimate [s]."""
 KEPT_CARDS: Final = 12
 """Measures and what-ifs whose builds are kept."""
 
@@ -109,7 +108,7 @@ class Evaluated:
     _asked: Pace = field(init=False)
     _piece: float = 0.0
     _sample: Sample | None = None
-    _grids: Mapping[str, Grid] | None = None
+    _pilots: Sequence[Array] = ()
     _measure: Measure | None = None
 
     def __post_init__(self) -> None:
@@ -155,11 +154,11 @@ class Evaluated:
     def sample(self) -> Sample:
         """Statistics of the builds that are done, as a run of them has."""
         if self._sample is None:
-            if self._grids is None:
-                rows = slice(0, self.done)
-                positions = {name: own[rows] for name, own in self.kept.positions.items()}
-                self._grids = pilot_grids(self.response, self.kept.deviations[rows], positions, self.values)
-            found = results_of(self.response, self.values, self._grids, measures=[self.measure])
+            rows = slice(0, self.done)
+            positions = {name: own[rows] for name, own in self.kept.positions.items()}
+            trials = (self.response, self.kept.deviations[rows], positions, self.values)
+            self._pilots = self._pilots or pilots_of(*trials)  # once: a sample has at least FEW builds, or all
+            found = results_of(*trials, measures=[self.measure], pilots=self._pilots)
             self._sample = found[self.measure.name]
         return self._sample
 
@@ -437,4 +436,4 @@ def _made(moved: MovedValues, name: str, turn: Turn) -> NoEstimate | None:
     slopes = moved.known[name]
     if slopes.will_do or slopes.at_each_build:
         return None
-    return NoEstimate(f"{name} has no estimate in time, release the slider for builds", is_coming=False)
+    return NoEstimate(f"slopes of {name} take too long; release the slider to simulate", is_coming=False)

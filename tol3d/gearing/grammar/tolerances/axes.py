@@ -10,7 +10,6 @@ from typing_extensions import override
 from tol3d.gearing.effects import AxesOffset, AxisOffset, AxisTilt
 from tol3d.gearing.grammar.moves import BevelMeshSpec, MeshSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, MeshToleranceSpec, Nominal
-from tol3d.scene.bases import MoveSpec, PartSpec
 from tol3d.scene.entry import Entry
 from tol3d.units import Dimension, Quantity
 
