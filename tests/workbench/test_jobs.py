@@ -293,8 +293,12 @@ def test_arguments_are_those_of_the_analyses_but_files_and_programs() -> None:
         ("run", {}, "expected what_if, effects, changes, allocate, rare, got 'run'"),
         ("allocate", {"cost": "/etc/passwd"}, "allocate: expected ppm, ppk, measure, bounds, bound, freeze, stays"),
         ("effects", {"run_builders": True}, "effects: expected measure, base, seed, position, shapley, got 'run_bui"),
-        ("effects", {"base": True}, "effects: base: expected a whole number from 0 on, got True"),
-        ("changes", {"accept": float("nan")}, "changes: accept: expected a number, got nan"),
+        ("effects", {"base": True}, "effects: base: expected a whole number from 2 on, got True"),
+        (
+            "changes",
+            {"accept": float("nan")},
+            "changes: accept: expected builds of a million, from 0 to below 1000000, got nan",
+        ),
         ("what_if", {"set": {"centre distance": [1]}}, "what_if: set: expected texts or numbers by name, got"),
         ("what_if", {"quick": 1}, "what_if: quick: expected true or false, got 1"),
         ("allocate", {"freeze": "play"}, "allocate: freeze: expected a list of texts, got 'play'"),
@@ -454,7 +458,7 @@ def test_the_app_alone_says_what_a_scene_may_do(
         jobs.resume(job.id, **allowed)
     asked: list[Mapping[str, bool]] = []
     monkeypatch.setattr(
-        job_module, "named", lambda path: lambda attempt, order, monitor, trusted: asked.append(trusted)
+        job_module, "named", lambda path: lambda attempt, order, monitor, trusted: asked.append(trusted) or ""
     )
     for command in commands:
         job_module.main(*command[len(jobs_module.COMMAND) :])
