@@ -2,12 +2,10 @@
 
 import inspect
 import json
-import os
 import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +13,7 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
+from app_folders import HANGS, ORDER, left_attempt, until
 from places import SPUR_PAIR
 
 from tol3d import InputError, Overrides, RunError, load_scene, open_run, run_scene
@@ -33,7 +32,6 @@ from tol3d.study.results import task
 SCENE = Path("spur_pair.yaml")
 BLOCK = 2000  # trials
 TRIALS = 20 * BLOCK
-HANGS = 300.0  # s; a guard against waiting for ever, no claim
 
 # a job's process with small blocks, each made to last 0.1 s on the one core that it sees, whatever the machine; it has
 # all the time to end in order
@@ -52,13 +50,6 @@ def named(path):
 job.named = named
 job.main(*sys.argv[1:])
 """
-
-
-def until(found: Callable[[], bool]) -> None:
-    began = time.monotonic()
-    while not found():
-        assert time.monotonic() - began < HANGS
-        time.sleep(0.01)
 
 
 def opened(folder: Path) -> Path:
@@ -374,17 +365,9 @@ def test_a_folder_that_cannot_be_written_is_read(tmp_path: Path) -> None:
     assert Jobs(lock).list() == ()
 
 
-ORDER = Order("0001", "allocate", "spur_pair.yaml", {}, "2026-11-29T09:00:00+00:00")
-
-
 def left(folder: Path, order: Order, progress: Progress | None = None) -> Jobs:
     """Jobs of a folder in which somebody left an attempt."""
-    attempt = Attempt(folder, 1)
-    attempt.place.mkdir(parents=True)
-    attempt.write(order)
-    if progress is not None:
-        attempt.write(progress)
-    os.utime(attempt.place, (0.0, 0.0))
+    left_attempt(folder, order, progress)
     return Jobs(FolderLock(opened(folder)))
 
 

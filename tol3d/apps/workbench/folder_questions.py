@@ -100,13 +100,14 @@ class FolderQuestions:
     def delete(self, asked: Told) -> Told:
         """Delete a job that has ended; with the run that is named, if one is, in `runs`."""
         job, run = self.queue.job(str(asked["id"])), str(asked.get("run") or "")
-        if run and (job.run is None or job.run.name != run):
-            raise InputError(f"job {job.id}: expected its own run, got {run!r}")
-        if run and any(own.run == job.run for own in self.queue.working):
-            raise InputError(f"{RUNS}/{run}: another job works on it")
-        self.queue.delete(job.id)
         if run:
+            self.lock.demand()
+            if job.state != "done" or job.run is None or job.run.name != run:
+                raise InputError(f"job {job.id}: expected its own finished run, got {run!r}")
+            if any(own.run == job.run for own in self.queue.working):
+                raise InputError(f"{RUNS}/{run}: another job works on it")
             named(DELETE_RUN)(run, self.workspace.folder)
+        self.queue.delete(job.id)
         return {}
 
     def runs(self, asked: Told) -> Told:
@@ -117,7 +118,7 @@ class FolderQuestions:
     def report(self, asked: Told) -> Path | Told:
         """File of the report of a job's run, or of a run by its name; the job that makes it, while it does."""
         scene, run = str(asked["scene"]), asked.get("run")
-        found = self.queue.report_of(str(run), scene) if run and not id else self.queue.report(str(asked["id"]))
+        found = self.queue.report_of(str(run), scene) if run else self.queue.report(str(asked["id"]))
         return found if isinstance(found, Path) else _told(found)
 
     def answer(self, asked: Told) -> Told:

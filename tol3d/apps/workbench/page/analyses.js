@@ -13,9 +13,9 @@ async function fill() {
 }
 
 function note(kind) {
-  const count = Object.keys(app.now).length, words = ["It is asked of the scene's file."];
+  const count = Object.keys(app.now).length, words = ["By the scene's file."];
   if (count && kind === "what_if") words.push("The fields begin with what is moved.");
-  else if (count) words.push(`${count} change${count > 1 ? "s" : ""} not kept: the tolerances of the file count; keep… writes them.`);
+  else if (count) words.push(`${count} change${count > 1 ? "s" : ""} not kept: the tolerances of the file count; keep… writes changes there.`);
   if (editor.text() !== app.saved) words.push("The text is not saved: what is in the file counts.");
   return words.join(" ");
 }

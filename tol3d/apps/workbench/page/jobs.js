@@ -94,13 +94,13 @@ function deletes(job) {
   const question = document.createElement("span"), box = document.createElement("input"), label = document.createElement("label");
   question.className = "asks";
   box.type = "checkbox";
-  label.append(box, ` and its run, the folder runs/${job.run}`);
+  label.append(box, ` with the folder runs/${job.run} and its ${job.done} trials`);
   const leave = () => {
     asking = "";
     return jobs();
   };
-  question.append(`delete this ${title(job)}? `, ...(job.kind === "run" && job.state === "done" ? [label, " "] : []),
-    button("delete it", () => ask("delete", { id: job.id, run: box.checked ? job.run : "" }).catch(trouble).then(leave).then(made)), " ", button("leave it", leave));
+  question.append("delete this job? ", ...(job.kind === "run" && job.state === "done" ? [label, " "] : []),
+    button("delete it", () => ask("delete", { id: job.id, run: box.checked ? job.run : "" }).catch(trouble).then(leave).then(made)), " ", button("keep it", leave));
   return [question];
 }
 
