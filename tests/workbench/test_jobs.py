@@ -440,13 +440,16 @@ def test_the_app_alone_says_what_a_scene_may_do(
         assert (job.state, job.message.partition(":")[0]) == ("failed", "its process ended with 1 as it started")
         jobs.resume(job.id, **allowed)
     asked: list[Mapping[str, bool]] = []
-    monkeypatch.setattr(
-        job_module, "named", lambda path: lambda attempt, order, monitor, trusted: asked.append(trusted) or ""
-    )
+
+    def work(attempt: Attempt, order: Order, monitor: object, trusted: Mapping[str, bool]) -> str:
+        asked.append(trusted)
+        return "no remark"
+
+    monkeypatch.setattr(job_module, "named", lambda path: work)
     for command in commands:
         job_module.main(*command[len(jobs_module.COMMAND) :])
     assert asked == 2 * [{"trust_parts": False, "run_builders": False} | allowed]
-    assert jobs.job(job.id).state == "done"
+    assert (jobs.job(job.id).state, jobs.job(job.id).message) == ("done", "no remark")
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from app_folders import EVIL, HOSTILE, started
+from app_folders import EVIL, HOSTILE, started, until
 from browser import Page, browser
 from places import SPUR_PAIR
 
@@ -15,7 +15,8 @@ from tol3d.apps.workbench.attempt import JOBS
 
 pytestmark = pytest.mark.slow
 
-WIDER = """[...document.querySelectorAll("html, dialog[open], dialog[open] *:not(.wide, .wide *, svg *, .unseen, .unseen *)")]
+WIDER = """[...document.querySelectorAll("html, dialog[open], dialog[open] *")]
+  .filter((own) => !own.closest(".wide, svg, .unseen"))
   .filter((own) => own.scrollWidth > (own.matches("html") ? innerWidth : own.clientWidth + 1) && own.clientWidth)
   .map((own) => own.tagName + own.id)"""
 """The page and what is open above it, as far as they can be scrolled sideways, but for tables, which may."""
@@ -37,6 +38,11 @@ class App:
         """Fill in a field of a form."""
         field = f"document.querySelector({json.dumps(f'#fields [data-argument={argument}]')})"
         self.page.ask(f"{field}.value = {json.dumps(value)}")
+
+    def choose(self, selector: str, value: str) -> None:
+        """Choose one of a list."""
+        change = f"(own.value = {json.dumps(value)}, own.dispatchEvent(new Event('change')))"
+        self.page.ask(f"(own => {change})(document.querySelector({json.dumps(selector)}))")
 
     def text(self, selector: str) -> str:
         return str(self.page.ask(f"document.querySelector({json.dumps(selector)}).textContent"))
@@ -60,8 +66,8 @@ def app(tmp_path_factory: pytest.TempPathFactory) -> Iterator[App]:
         yield own
 
 
-def test_a_run_of_some_trials_an_analysis_and_their_end(app: App) -> None:
-    page = app.page
+def test_a_run_of_some_trials_an_analysis_and_their_end(app: App, tmp_path: Path) -> None:
+    page, downloads = app.page, tmp_path
     page.ask("document.querySelector('#trials').value = 'many'")
     app.click("run")
     app.wait("#trouble", "trials: expected a whole number from 1 on, got 'many'")
@@ -85,9 +91,10 @@ def test_a_run_of_some_trials_an_analysis_and_their_end(app: App) -> None:
     assert "sum of first indices" in app.text("#found-page")
     numbers = (app.folder / JOBS / "0003" / "answer.csv").read_text("utf-8")
     assert numbers.count("\n") > 10
-    page.asked.clear()
+    page.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(downloads))
     app.click("numbers as CSV")
-    page.wait("true")
+    until(lambda: (downloads / "pair effects.csv").exists())
+    assert (downloads / "pair effects.csv").read_text("utf-8") == numbers
     for width in (1400, 390):
         page.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
         assert page.ask(WIDER) == [], width
@@ -119,10 +126,7 @@ def test_forms_say_that_what_is_moved_is_not_kept(app: App) -> None:
     for kind, words in (("allocate", "1 change not kept"), ("what_if", "The fields begin with what is moved.")):
         app.click("analyses…")
         app.page.wait("document.querySelector('#analyses').open")
-        app.page.ask(
-            "(own => (own.value = '%s', own.dispatchEvent(new Event('change'))))(document.querySelector('#analysis'))"
-            % kind
-        )
+        app.choose("#analysis", kind)
         app.wait("#analysis-note", words)
         app.click("close", "#analyses")
     assert app.page.ask("document.querySelector('#fields [data-of=\"centre distance\"]').value") == "±33 um"
@@ -135,10 +139,7 @@ def test_scenes_that_come_and_go_are_seen_and_names_of_strangers_are_text(app: A
     options = "[...document.querySelectorAll('#scene option')].map((own) => own.textContent)"
     app.page.wait(f"{options}.length === 2")
     assert app.page.ask(options) == [name, "pair.yaml"]
-    app.page.ask(
-        "(own => (own.value = %s, own.dispatchEvent(new Event('change'))))(document.querySelector('#scene'))"
-        % json.dumps(name)
-    )
+    app.choose("#scene", name)
     app.wait("#title", EVIL)
     app.ready()
     app.page.ask("document.querySelector('#trials').value = '5'")

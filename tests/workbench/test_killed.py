@@ -79,6 +79,12 @@ def test_jobs_of_an_app_that_is_killed_end_and_wait_for_no_app(folder: Path) -> 
         assert [(job.state, job.kind) for job in jobs.list()] == [("done", "run"), ("done", "effects")]
 
 
+def take_terminal() -> None:
+    """Make the first input the terminal from which Ctrl-C comes: the first one that a new session opens."""
+    os.close(os.open(os.ttyname(0), os.O_RDWR))
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize(("typed", "goes_on"), [("n\n", False), ("\n", True), ("\x03", True)])
 def test_an_app_that_is_interrupted_at_a_terminal_asks_whether_a_run_goes_on(
     typed: str, goes_on: bool, folder: Path
@@ -100,8 +106,8 @@ def test_an_app_that_is_interrupted_at_a_terminal_asks_whether_a_run_goes_on(
         stdout=own,
         stderr=own,
         start_new_session=True,
-        preexec_fn=lambda: (os.close(os.open(os.ttyname(0), os.O_RDWR)), signal.signal(signal.SIGINT, signal.SIG_DFL)),
-    )  # the first terminal that a session opens is its own: Ctrl-C comes from there
+        preexec_fn=take_terminal,
+    )
     try:
         wait_for(b"Ctrl-C ends it")
         address = next(line for line in told.decode().splitlines() if "/#" in line).split()[-1]
