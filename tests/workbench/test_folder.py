@@ -323,7 +323,7 @@ def test_a_bundled_scene_is_copied_here_and_not_twice(
     assert commands._copied("spur_pair").read_text() == "mine"
     assert capsys.readouterr().out.splitlines() == [
         "spur_pair.yaml: copied here",
-        "spur_pair.yaml: opened as it is here; it is not the bundled scene of that name",
+        "spur_pair.yaml: is here already, and is opened as it is",
     ]
     (tmp_path / "spur_pair").mkdir()
     assert not is_bundled("spur_pair"), "a folder of that name is opened"

@@ -90,7 +90,7 @@ def _copied(name: str) -> Path:
 
     path = Path(f"{name}.yaml")
     if path.exists():
-        tell(f"{path}: opened as it is here; it is not the bundled scene of that name")
+        tell(f"{path}: is here already, and is opened as it is")
         return path
     for copy in copy_scene(name, Path(), all_kinds()):
         tell(f"{copy}: copied here")
