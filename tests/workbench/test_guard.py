@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
@@ -323,6 +324,19 @@ def test_a_report_opens_once_in_a_sandbox_and_not_late(tmp_path: Path, monkeypat
         _, late = asked(app, "report", id="0001")
         assert reply(app, "GET", late["address"], [*OPENED.items()]).status == 404
         assert server.tickets == {}
+
+
+def test_questions_on_the_folder_do_not_wait_until_a_scene_is_evaluated(tmp_path: Path) -> None:
+    shutil.copy(SPUR_PAIR, tmp_path)
+    evaluated = Event()
+    with opened(tmp_path) as (server, app):
+        server.thread.submit(evaluated.wait, 60.0)
+        try:
+            answers = [asked(app, name, **PAIR)[0] for name in ("folder", "changed", "jobs", "runs")]
+            assert not evaluated.is_set()
+        finally:
+            evaluated.set()
+    assert answers == [200] * 4
 
 
 def test_numbers_of_an_answer_are_a_file_and_no_page(tmp_path: Path) -> None:
