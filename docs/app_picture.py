@@ -24,7 +24,7 @@ from typing import Final
 from browser import Page, browser
 
 SCENES: Final = Path(__file__).resolve().parent.parent / "scenes"
-STEPS_OF_FACTOR: Final = 100 / math.log(4.0)
+STEPS_OF_FACTOR: Final = 1 / math.log(1.01)
 """Steps of a slider of the app by the logarithm of the factor."""
 SHOWN: Final = (
     "!!document.querySelector('#answer .verdict') && document.querySelector('#progress').hidden"

@@ -14,8 +14,17 @@ from tol3d.study.runs.run import open_run
 
 ASKED: dict[str, tuple[Callable[[Any], Any], tuple[str, ...]]] = {
     "what-if": (
-        lambda of: analyses.what_if(of, set={"centre distance": "±10 um"}, factor={"reducer run-out": 2}, quick=True),
-        ("--set", "centre distance=±10 um", "--factor", "reducer run-out=2", "--quick"),
+        lambda of: analyses.what_if(
+            of,
+            set={"centre distance": "js6"},
+            factor={"reducer run-out": 2},
+            limits={"normal backlash": "12 um..70 um"},
+            quick=True,
+        ),
+        (
+            *("--set", "centre distance=js6", "--factor", "reducer run-out=2"),
+            *("--limits", "normal backlash=12 um..70 um", "--quick"),
+        ),
     ),
     "effects": (
         lambda of: analyses.effects(of, measure="normal backlash", base=8, position="as-input"),

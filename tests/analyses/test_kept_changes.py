@@ -1,6 +1,7 @@
 """What-ifs kept in a scene: one place of its text changes, and it draws what the response with the changes draws."""
 
 import difflib
+import re
 from functools import cache
 from pathlib import Path
 
@@ -13,6 +14,8 @@ from tol3d import InputError
 from tol3d.analyses.kept_changes import in_numbers, scene_with
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.stated_changes import Change, change_of, changed
+from tol3d.analyses.stated_classes import sizes_of
+from tol3d.analyses.stated_limits import limited, limits_of_text
 from tol3d.assembly.zones import Process
 from tol3d.kinds import NEEDED_KINDS
 from tol3d.scene import Scene
@@ -367,3 +370,109 @@ def test_the_command_writes_the_scene(tol3d: Command, tmp_path: Path) -> None:
     code, _, said = tol3d(*words)
     assert code == 2
     assert "expected the name of a new file" in said
+
+
+@pytest.mark.parametrize(
+    ("written", "value", "after"),
+    [
+        ("{fit: js7, of: 60 mm}", "js8", "{fit: js8, of: 60 mm}"),
+        ("{fit: k6, of: 1.26 in, law: {kind: triangular}}", "h7", "{fit: h7, of: 1.26 in, law: {kind: triangular}}"),
+        ("40.1 mm +0.12/0", "H9", "{fit: H9, of: 40.1 mm}"),
+        ("{general: m, of: 60 mm}", "m6", "{fit: m6, of: 60 mm}"),
+    ],
+)
+def test_a_class_is_kept_as_a_class_where_the_line_has_limits_of_a_drawing(
+    written: str, value: str, after: str
+) -> None:
+    scene = pair(written)
+    simulation = simulation_of(scene)
+    own, sizes = response_of(simulation, analytic=True), sizes_of(scene, simulation.lines)
+    kept = assert_kept("", change_of(own, f"t={value}", sizes), scene, own)
+    assert hunks(scene.text, kept.text) == [[f"  t: {{kind: tooth_thickness, of: a, distribution: {after}}}  # thin"]]
+    assert in_numbers(scene, kept) == {}
+
+
+CENTRE = PAIR.replace(
+    "t: {kind: tooth_thickness, of: a, distribution: WRITTEN}",
+    "t: {kind: centre_distance, of: mesh, distribution: {kind: normal, lower: -5 um, upper: 9 um}}",
+)
+
+
+def test_a_class_of_a_size_that_a_part_or_move_states_is_kept_in_numbers_where_a_law_has_limits_of_its_own() -> None:
+    """H7 of 60.2 mm is 0 to 30 µm, ISO 286-2, table 6; j6 of it -7 to 12 µm."""
+    scene = read(CENTRE)
+    simulation = simulation_of(scene)
+    own, sizes = response_of(simulation, analytic=True), sizes_of(scene, simulation.lines)
+    assert {name: str(size) for name, size in sizes.items()} == {"t": "60.2 mm"}
+    for value, lower, upper in (("H7", 0, 30), ("j6", -7, 12)):
+        kept = assert_kept("", change_of(own, f"t={value}", sizes), scene, own)
+        assert kept.text == scene.text.replace("lower: -5 um, upper: 9 um", f"lower: {lower} um, upper: {upper} um")
+    for value, words in (("H77", "expected"), ("q7", "expected")):
+        with pytest.raises(InputError, match=words):
+            change_of(own, f"t={value}", sizes)
+    with pytest.raises(
+        InputError, match="for the scene states no nominal size at which a class could be read, got 'H7'"
+    ):
+        change_of(own, "t=H7")
+
+
+@pytest.mark.parametrize(
+    ("text", "before", "after"),
+    [
+        ("play=30 um..", "lower_limit: 40 µm", "lower_limit: 30 µm"),
+        ("play=0.03 mm..", "lower_limit: 40 µm", "lower_limit: 0.03 mm"),
+        ("play=..90 um", "lower_limit: 40 µm}", "lower_limit: 40 µm, upper_limit: 90 um}"),
+        ("play=none..", "lower_limit: 40 µm", "lower_limit: null"),
+        ("play=none..90 µm", "lower_limit: 40 µm}", "lower_limit: null, upper_limit: 90 um}"),
+        ("play=±90um", "lower_limit: 40 µm}", "lower_limit: -90 µm, upper_limit: 90 um}"),
+    ],
+)
+def test_limits_are_kept_in_their_line(text: str, before: str, after: str) -> None:
+    scene = pair("±20 um", PAIR.replace("of: mesh}}", "of: mesh, lower_limit: 40 µm}}  # play"))
+    own = response_of(simulation_of(scene), analytic=True)
+    limits = limits_of_text(own, text)
+    kept = scene_with(own, scene, [], [limits])
+    assert kept.text == scene.text.replace(before, after)
+    again = read_again(kept)
+    assert again.model_dump(warnings=False) == kept.model_dump(warnings=False)
+    (asked,) = limited(own.measures, [limits])
+    (found,) = simulation_of(again).system.measures
+    assert (found.lower_limit, found.upper_limit) == (asked.lower_limit, asked.upper_limit)
+    assert asked.lower_limit != own.measures[0].lower_limit or asked.upper_limit != own.measures[0].upper_limit
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("play=50 um", "expected limits such as 10 um..40 um"),
+        ("play=..", "expected limits such as 10 um..40 um"),
+        ("play=50..60 um", "a bare number without its unit"),
+        ("play=5 deg..", "expected a length with its unit"),
+        ("play=", "expected MEASURE=LOW..HIGH"),
+        ("plai=5 um..", "got 'plai'; did you mean"),
+        ("play=..39 um", "expected a lower limit below the upper one, got 40 um and 39 um"),
+    ],
+)
+def test_limits_that_cannot_be_are_refused(text: str, words: str) -> None:
+    scene = pair("±20 um", PAIR.replace("of: mesh}}", "of: mesh, lower_limit: 40 um}}"))
+    own = response_of(simulation_of(scene), analytic=True)
+    with pytest.raises(InputError, match=re.escape(words)):
+        limited(own.measures, [limits_of_text(own, text)])
+
+
+def test_limits_of_a_curve_are_those_of_its_ends() -> None:
+    """Its lowest value has the lower one alone; kept, they are the curve's."""
+    name = "error"
+    scene = read(
+        pair("±20 um").text.replace(
+            "play: {kind: normal_backlash, of: mesh}",
+            f"{name}: {{kind: normal_backlash, of: mesh, over: turn, positions: 6, take: curve}}",
+        )
+    )
+    own = response_of(simulation_of(scene), analytic=True)
+    texts = (f"{name}, lowest=7 um..", f"{name}, highest=..95 um")
+    kept = scene_with(own, scene, [], [limits_of_text(own, text) for text in texts])
+    assert kept.text == scene.text.replace("take: curve}", "take: curve, lower_limit: 7 um, upper_limit: 95 um}")
+    for text in (f"{name}, lowest=..7 um", f"{name}, highest=7 um.."):
+        with pytest.raises(InputError, match="which the other end of its curve has"):
+            limits_of_text(own, text)

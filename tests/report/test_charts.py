@@ -1,5 +1,6 @@
 """Charts told once: both renderers draw the same numbers of a chart, which tests write down."""
 
+import itertools
 import math
 import re
 import subprocess
@@ -17,7 +18,7 @@ from tol3d.report.canvas import new_figure
 from tol3d.report.chart import Axis, Cells, Chart, Field, Filled, Lengths, Line, Mark, Names, Panel, Range
 from tol3d.report.chart_figure import charts_figure
 from tol3d.report.drawn_chart import draw_panel
-from tol3d.report.html.frame import NARROW, WIDE
+from tol3d.report.html.frame import LETTER, NARROW, WIDE, Frame, Scale
 from tol3d.report.html.svg import figure, svg
 from tol3d.report.ticks import ticks_of
 
@@ -113,6 +114,19 @@ def test_ticks_are_the_densest_even_ones_that_are_not_too_many(low: float, span:
     found = ticks_of(low, low + span, "um", most)
     assert [value for value, _ in found] == pytest.approx([k * step for k in range(first, last + 1)], abs=1e-6 * step)
     assert [float(text.replace("−", "-")) for _, text in found] == [value for value, _ in found]
+
+
+@given(st.floats(-2e3, 2e3), st.floats(0.05, 2e3), st.sampled_from([("um", NARROW), ("mm", NARROW), ("um", WIDE)]))
+def test_an_axis_of_numbers_has_three_ticks_whose_words_stand_apart(
+    low: float, span: float, drawn: tuple[str, Frame]
+) -> None:
+    """Letters are 6.6 wide. Of 264 units the widest words, such as −1999.99, take a fifth each."""
+    unit, frame = drawn
+    scale = Scale(Axis("play", low, low + span, unit), frame.left, frame.width - frame.right, 3)
+    found = scale.ticks
+    assert len(found) >= 3
+    for (one, words), (other, next_words) in itertools.pairwise(found):
+        assert scale(other) - scale(one) > LETTER * (len(words) + len(next_words)) / 2
 
 
 def test_a_report_without_3d_loads_no_matplotlib() -> None:

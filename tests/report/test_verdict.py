@@ -17,7 +17,8 @@ from tol3d.report.page import page
 from tol3d.report.sheet import as_text
 from tol3d.report.table import Detail, run_report
 from tol3d.report.verdict import accepted_text, short_verdict, verdict_table
-from tol3d.study.runs.summary.judged import ACCEPTED_PPM, AcceptedPpk, JudgedMeasure, all_ok
+from tol3d.statistics.estimates.performance_bounds import CHANCE, rank_below
+from tol3d.study.runs.summary.judged import ACCEPTED_PPM, AcceptedPpk, JudgedMeasure, all_ok, trials_to_judge
 
 
 def lines_of(shown: RenderableType, width: int = 200) -> list[str]:
@@ -41,7 +42,7 @@ def spur(folder: Path, limits: str, trials: int = 4000, centre: float = 172.5) -
 
 def stated(below: int, trials: int, limit: float | None = 15.0) -> dict[str, Any]:
     ci = stats.binomtest(below, trials).proportion_ci(0.95, "exact")
-    sample = {"out_ppm": 1e6 * below / trials, "out_ppm_95": [1e6 * ci.low, 1e6 * ci.high]}
+    sample = {"trials": trials, "out_ppm": 1e6 * below / trials, "out_ppm_95": [1e6 * ci.low, 1e6 * ci.high]}
     return {"take": "value", "geometric": sample, "lower_limit": limit, "upper_limit": None}
 
 
@@ -79,6 +80,43 @@ def test_a_study_that_cannot_bound_its_share_has_too_few_trials() -> None:
     own = stated(3, 4096)
     own["geometric"]["out_ppm_95"] = None  # of replicates with few trials out
     assert JudgedMeasure.of(typed_measure(own)).verdict == "too few trials"
+
+
+@pytest.mark.parametrize(("below", "trials"), [(0, 200), (0, 1364), (3, 500), (12, 3000), (9, 5000), (40, 12_000)])
+def test_as_many_trials_as_are_advised_give_a_verdict_and_a_few_per_cent_fewer_do_not(below: int, trials: int) -> None:
+    """With the same share out of limits; none of n is below 0.27 % from ln 0.025 / ln(1 - 0.0027) = 1365 on."""
+    measure = typed_measure(stated(below, trials))
+    enough = trials_to_judge(measure.shares, ACCEPTED_PPM, limited=True)
+    assert enough is not None
+
+    def verdict(count: int) -> str:
+        return JudgedMeasure.of(typed_measure(stated(round(below / trials * count), count))).verdict
+
+    assert verdict(enough) != "too few trials"
+    assert [verdict(round(share * enough)) for share in (0.6, 0.75)] == ["too few trials"] * 2
+    if not below:
+        assert 1365 <= enough <= 1365 * 1.02
+
+
+def test_no_number_of_trials_judges_a_share_that_is_what_is_accepted() -> None:
+    measure = typed_measure(stated(27, 10_000))
+    assert trials_to_judge(measure.shares, ACCEPTED_PPM, limited=True) is None
+
+
+@pytest.mark.parametrize(("accepted", "factor"), [(1.1, (0.2 / 0.1) ** 2), (1.35, (0.3 / 0.15) ** 2), (1.2, None)])
+def test_trials_for_a_ppk_grow_with_the_square_of_its_bounds_over_its_margin(
+    accepted: float, factor: float | None
+) -> None:
+    own = typed_measure(stated(1, 400)).shares.model_copy(update={"ppk": 1.2, "ppk_95": [1.0, 1.5]})
+    found = trials_to_judge(own, AcceptedPpk(accepted), limited=True)
+    assert found == (None if factor is None else pytest.approx(400 * factor, abs=1.0))
+
+
+def test_a_ppk_without_a_bound_needs_trials_enough_for_a_quantile_of_0_135_per_cent() -> None:
+    own = typed_measure(stated(0, 400)).shares.model_copy(update={"ppk": 1.2, "ppk_95": [None, 1.5]})
+    enough = trials_to_judge(own, AcceptedPpk(1.1), limited=True)
+    assert enough is not None
+    assert (rank_below(enough, 0.00135, CHANCE), rank_below(enough - 1, 0.00135, CHANCE)) == (1, 0)
 
 
 def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:

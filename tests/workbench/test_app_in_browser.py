@@ -6,6 +6,7 @@ import re
 import socket
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from threading import Thread
 from typing import Any
@@ -23,14 +24,14 @@ pytestmark = pytest.mark.slow
 
 SCENE, CENTRE, BACKLASH = "pair.yaml", "centre distance", "normal backlash"
 TEXT = SPUR_PAIR.read_text("utf-8").replace("trials: 2000", "trials: 200")
-KEYS = {"ArrowRight": 39, "PageUp": 33, "z": 90, "s": 83, "?": 191, "Escape": 27}
+KEYS = {"ArrowRight": 39, "ArrowDown": 40, "Tab": 9, "PageUp": 33, "z": 90, "s": 83, "?": 191, "Escape": 27}
 SLIDER = f'#sliders input[type=range][data-line="{CENTRE}"]'
 FIELD = f'#sliders input[type=text][data-line="{CENTRE}"]'
 SEEN = """window.seen = [];
 new MutationObserver(() => seen.push(document.querySelector("#chart .legend .dashed") !== null)).observe(
   document.querySelector("#chart"), { childList: true })"""
 """Notes each picture of the histogram: with an estimate or without; a key moves a slider and releases it at once."""
-WIDER = """["html", "#left", "#middle", "#card"].filter((own) => {
+WIDER = """["html", "#left", "#middle", "#card", "#moves"].filter((own) => {
   const { scrollWidth, clientWidth } = document.querySelector(own);
   return scrollWidth > (own === "html" ? innerWidth : clientWidth);
 })"""
@@ -46,7 +47,8 @@ CONTRAST = """(() => {
     ? colour(getComputedStyle(own).backgroundColor) : behind(own.parentElement);
   const found = [];
   for (const own of document.querySelectorAll("body *:not(#stage *):not(.cm-line *):not(option)")) {
-    const text = [...own.childNodes].filter((node) => node.nodeType === 3).map((node) => node.data.trim()).join("");
+    const text = own.matches("input[type=text], select") ? own.value || own.placeholder
+      : [...own.childNodes].filter((node) => node.nodeType === 3).map((node) => node.data.trim()).join("");
     if (!text || !own.checkVisibility() || own.disabled) continue;
     const style = getComputedStyle(own), svg = own.closest("svg");
     const [one, two] = [light(colour(svg ? style.fill : style.color)), light(behind(own))].sort((a, b) => b - a);
@@ -55,6 +57,15 @@ CONTRAST = """(() => {
   return found;
 })()"""
 """Texts of less than 4.5 to what is behind them; W3C, WCAG 2.2, 1.4.3."""
+
+
+TICKS = """(() => {
+  const all = [...document.querySelectorAll("#chart svg .tick[text-anchor=middle]")]
+    .map((own) => own.getBoundingClientRect());
+  const low = Math.max(...all.map((own) => own.y));
+  return all.filter((own) => own.y > low - 2).map((own) => [own.left, own.right]).sort((a, b) => a[0] - b[0]);
+})()"""
+"""Ends of the words of the ticks below the histogram."""
 
 
 @dataclass(frozen=True)
@@ -166,13 +177,13 @@ def test_the_first_story_by_keyboard_alone(app: App) -> None:
     app.load()
     app.focus(SLIDER)
     app.key("ArrowRight")
-    wider = {CENTRE: "x1.014"}
+    wider = {CENTRE: "x1.01"}
     app.solid(wider)
     assert not app.page.ask("seen.at(-1)"), "an estimate is not drawn over what is simulated"
-    assert app.page.ask(f"document.querySelector({json.dumps(FIELD)}).value") == "±20.28 um"
+    assert app.page.ask(f"document.querySelector({json.dumps(FIELD)}).value") == "±20.2 µm"
     assert app.page.ask("document.activeElement.dataset.line") == CENTRE
     app.key("PageUp")
-    app.solid({CENTRE: "x1.338"})  # 4 ** 0.21, a tenth of the range further
+    app.solid({CENTRE: "x1.116"})  # 1.01 ** 11, ten steps further
     app.key("z", control=True)
     app.solid(wider)
     app.key("z", control=True)
@@ -211,13 +222,13 @@ def test_a_slider_on_its_way_shows_an_estimate_until_it_is_released(app: App) ->
     assert app.page.ask("document.querySelector('#answer').textContent") == before
     assert app.now() == {}
     app.told(SLIDER, "change", 40)
-    app.solid({CENTRE: "x1.741"})
+    app.solid({CENTRE: "x1.489"})
 
 
 def test_the_worst_build_in_3d_is_that_of_the_tolerances_that_are_tried(app: App) -> None:
     app.load()
     gap = "[...document.querySelectorAll('.names span')].map(own => own.textContent).find(own => own.startsWith('gap'))"
-    for now in ({}, {CENTRE: "x1.741"}):
+    for now in ({}, {CENTRE: "x1.489"}):
         if now:
             app.told(SLIDER, "change", 40)
         else:
@@ -231,7 +242,7 @@ def test_the_worst_build_in_3d_is_that_of_the_tolerances_that_are_tried(app: App
 
 def test_reset_aside_and_a_reload(app: App) -> None:
     app.load()
-    wider, other = {CENTRE: "x1.014"}, "lost motion"
+    wider, other = {CENTRE: "x1.01"}, "lost motion"
     app.focus(SLIDER)
     app.key("ArrowRight")
     app.solid(wider)
@@ -302,7 +313,7 @@ def test_no_sideways_scroll_and_no_faint_text_at_any_width(app: App) -> None:
     app.focus(SLIDER)
     app.key("ArrowRight")
     app.click("aside")
-    for width in (1400, 800, 390, 320):
+    for width in (1400, 1024, 768, 390, 320):
         size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
         app.page.call("Emulation.setDeviceMetricsOverride", **size)
         for scheme in ("light", "dark"):
@@ -310,6 +321,122 @@ def test_no_sideways_scroll_and_no_faint_text_at_any_width(app: App) -> None:
             app.page.call("Emulation.setEmulatedMedia", features=[feature])
             assert app.page.ask(WIDER) == [], (width, scheme)
             assert app.page.ask(CONTRAST) == [], (width, scheme)
+        ticks = app.page.ask(TICKS)
+        assert len(ticks) >= 3, width
+        assert all(one[1] < other[0] for one, other in pairwise(ticks)), "words of ticks stand apart"
+    places = ("#answer .verdict", "#chart", "#sliders", "#stage", "#left", "#text")
+    tops = [app.page.ask(f"document.querySelector('{own}').getBoundingClientRect().y") for own in places]
+    assert tops == sorted(tops), "one below the other"
+
+
+def test_verdict_and_histogram_stay_in_sight_while_the_sliders_scroll(app: App) -> None:
+    app.load()
+    size = {"width": 1400, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    app.page.call("Emulation.setDeviceMetricsOverride", **size)
+    app.page.ask("document.querySelector('#sliders li:last-child').scrollIntoView()")
+    assert app.page.ask("scrollY") == 0
+    for own in ("#measure", "#answer .verdict", "#chart svg", "#keep", "#sliders li:last-child input[type=range]"):
+        box = app.page.ask(f"(b => [b.top, b.bottom])(document.querySelector('{own}').getBoundingClientRect())")
+        assert 0 <= box[0] < box[1] <= 900, own
+    assert app.page.ask("document.querySelector('#moves').scrollTop") > 0
+
+
+def test_limits_are_typed_told_once_undone_and_kept(app: App) -> None:
+    app.load()
+    app.focus("#upper_limit")
+    app.page.call("Input.insertText", text="71 µm")
+    app.page.ask("document.activeElement.blur()")
+    limited = {f"limits: {BACKLASH}": "..71 µm"}
+    app.solid(limited)
+    assert app.page.ask("document.querySelector('#state').textContent") == "1 change not kept"
+    assert "USL 71 µm" in app.page.ask("document.querySelector('#chart svg').textContent")
+    app.click("aside")
+    app.page.wait("document.querySelector('#beside article') !== null")
+    assert "limits 15 to 71 µm" in app.page.ask("document.querySelector('#beside article').textContent")
+    app.key("z", control=True)
+    app.solid({})
+    assert app.page.ask("document.querySelector('#upper_limit').value") == ""
+    app.told("#lower_limit", "change", "none")
+    app.solid({f"limits: {BACKLASH}": "none.."})
+    app.told("#lower_limit", "change", "")
+    app.solid({})
+    assert app.page.ask("document.querySelector('#lower_limit').value") == "15 µm", "empty: that of the scene"
+    app.told("#upper_limit", "change", "9 um")
+    app.page.wait("!document.querySelector('#limits-wrong').hidden")
+    assert app.page.ask("document.querySelector('#limits-wrong').textContent").endswith("got 15 µm and 9 µm")
+    app.told("#upper_limit", "change", "71 µm")
+    app.solid(limited)
+    app.key("s", control=True)
+    app.page.wait("document.querySelector('#diff').open")
+    app.click("write")
+    app.page.wait("!document.querySelector('#diff').open && document.querySelector('#keep').disabled")
+    app.solid({})
+    wanted = TEXT.replace("# the paper's lower limit", "# the paper's lower limit\n    upper_limit: 71 um")
+    assert app.file.read_text("utf-8") == wanted
+
+
+def test_who_sees_or_moves_little_can_use_it(app: App) -> None:
+    """A chart is told by a title and a table, a result once, when a slider is released; what has the focus shows it."""
+    app.load()
+    app.page.ask("""window.said = [];
+      new MutationObserver(() => said.push(document.querySelector("#result").textContent)).observe(
+        document.querySelector("#result"), { childList: true })""")
+    assert app.page.ask(
+        "[...document.querySelectorAll(':is([aria-live], [role=status]):not(#editor *)')].map(own => own.id)"
+    ) == [
+        "state",
+        "result",
+    ]
+    for step in (10, 20, 30):
+        app.told(SLIDER, "input", step)
+        app.page.wait("document.querySelector('#chart .legend .dashed') !== null")
+    assert app.page.ask("said") == []
+    app.told(SLIDER, "change", 30)
+    app.solid({CENTRE: "x1.348"})
+    app.page.wait("said.length > 0")
+    (said,) = app.page.ask("said")
+    assert re.fullmatch(r"too few trials; out of limits .+, Ppk \d\.\d\d", said)
+    assert (
+        app.page.ask("document.querySelector('#chart svg[role=img] > title').textContent") == f"histogram of {BACKLASH}"
+    )
+    rows = app.page.ask("[...document.querySelectorAll('#chart table td')].map(own => own.textContent)")
+    for name in ("scene", "simulated"):
+        shares = [float(own) for row in rows for own in re.findall(rf"{name} ([\d.]+) %", row)]
+        assert sum(shares) == pytest.approx(100.0, abs=0.05 * len(shares))
+    kinds = set()
+    app.focus("#measure")
+    for _ in range(16):
+        app.key("Tab")
+        kind, style, wide = app.page.ask(
+            "(own => [own.type ?? own.tagName, getComputedStyle(own).outlineStyle,"
+            " parseFloat(getComputedStyle(own).outlineWidth)])(document.activeElement)"
+        )
+        assert (style, wide) == ("solid", 2.0), kind
+        kinds.add(kind)
+    assert {"text", "button", "range"} <= kinds
+    app.focus("#measure")
+    app.key("ArrowDown")
+    app.page.wait("tol3dApp.app.measure === 'lost motion'")
+    for reduced in ("no-preference", "reduce"):
+        app.page.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": reduced}])
+        moving = app.page.ask(
+            "[...document.querySelectorAll('body *')].filter(own => "
+            "getComputedStyle(own).transitionDuration !== '0s' && !own.closest('#editor')).length"
+        )
+        assert (moving == 0) == (reduced == "reduce")
+    app.page.call("Emulation.setEmulatedMedia", features=[])
+
+
+def test_a_renamed_tolerance_drops_its_move_with_a_sentence(app: App) -> None:
+    app.load()
+    app.told(SLIDER, "change", 30)
+    app.solid({CENTRE: "x1.348"})
+    app.file.write_text(TEXT.replace("  centre distance:", "  distance of centres:"), "utf-8")
+    app.page.wait("!document.querySelector('#dropped').hidden")
+    assert app.page.ask("document.querySelector('#dropped').textContent") == (
+        "centre distance is no longer in the scene: its move was dropped."
+    )
+    app.solid({})
 
 
 def test_every_control_has_a_name(app: App) -> None:

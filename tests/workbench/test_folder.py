@@ -101,10 +101,13 @@ def test_a_form_asks_for_every_argument_and_shows_the_default_of_its_command(kin
 
 
 def test_a_what_if_begins_with_what_is_moved(pair: Questions) -> None:
-    form = pair.forms({**PAIR, "kind": "what_if", "now": {"centre distance": "x1.65"}})["form"]
-    fields = {own["data-of"]: own.get("value") for own in _Controls(form).found["set"]}
+    now = {"centre distance": "x1.65", "limits: normal backlash": "10 um..40 um"}
+    found = _Controls(pair.forms({**PAIR, "kind": "what_if", "now": now})["form"]).found
+    limits = {own["data-of"]: own.get("value") for own in found["limits"]}
+    assert limits == {"normal backlash": "10 um..40 um", "lost motion": None}
+    fields = {own["data-of"]: own.get("value") for own in found["set"]}
     assert len(fields) == 7
-    assert {line: value for line, value in fields.items() if value} == {"centre distance": "±33 um"}
+    assert {line: value for line, value in fields.items() if value} == {"centre distance": "±33 µm"}
 
 
 def test_fields_are_arguments_as_commands_take_them() -> None:

@@ -129,7 +129,7 @@ def test_forms_say_that_what_is_moved_is_not_kept(app: App) -> None:
         app.choose("#analysis", kind)
         app.wait("#analysis-note", words)
         app.click("close", "#analyses")
-    assert app.page.ask("document.querySelector('#fields [data-of=\"centre distance\"]').value") == "±33 um"
+    assert app.page.ask("document.querySelector('#fields [data-of=\"centre distance\"]').value") == "±33 µm"
     app.page.ask("tol3dApp.app.now = {}")
 
 

@@ -1,8 +1,9 @@
 """The number on the card is that of a run and of `what-if`, and what is kept in the scene's file has it too."""
 
 import json
+import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import wait
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from places import SPUR_PAIR
 from tol3d import InputError, Overrides, run_scene
 from tol3d.analyses.before_after import what_if
 from tol3d.analyses.stated_changes import factor_of
+from tol3d.analyses.stated_limits import limits_of_text
 from tol3d.apps.workbench.folder_questions import FolderQuestions
 from tol3d.apps.workbench.place import APP, FolderLock
 from tol3d.apps.workbench.questions import Questions, StaleError
@@ -69,6 +71,16 @@ def sample(questions: Questions, now: dict[str, str] | None = None, measure: str
     return found.sample
 
 
+def answered(questions: Questions, now: dict[str, str]) -> dict[str, Any]:
+    """Answer of a card, all of its trials."""
+    sample(questions, now)
+    return dict(questions.card(asked(now)))
+
+
+def diff_lines(told: Mapping[str, Any]) -> list[str]:
+    return [line for line in told["diff"].splitlines() if line[0] in "+-" and line[:3] not in ("+++", "---")]
+
+
 QUANTILES = ("p0_135", "p50", "p99_865")
 """Read from a grid, whose place is a little another one where the scene's own tolerances are."""
 
@@ -114,6 +126,137 @@ def test_a_moved_tolerance_has_the_numbers_of_what_if_and_of_the_kept_scene(own:
             assert getattr(kept, key) == pytest.approx(getattr(tried, key), abs=tried.quantile_error), key
 
 
+LIMITED = {"limits: normal backlash": "36 µm..70 um"}
+
+
+@pytest.mark.parametrize("more", [{}, WIDER])
+def test_other_limits_have_the_numbers_of_what_if_and_of_the_kept_scene(
+    more: dict[str, str], own: Questions, tmp_path: Path
+) -> None:
+    """Without a change of a tolerance nothing is evaluated for them."""
+    now = {**LIMITED, **more}
+    response = own.session(SCENE).response
+    changes = [factor_of(response, f"{CENTRE}=1.65")] if more else []
+    limits = [limits_of_text(response, "normal backlash=36 um..70 um")]
+    found = what_if(response, changes, BACKLASH, limits=limits, draws=0).measures[BACKLASH]
+    scene = own.card(asked())["answer"]
+    answered(own, more)
+    before = response.evaluations
+    card = answered(own, now)
+    assert response.evaluations == before
+    judged = own.session(SCENE).evaluated(BACKLASH, now).within(limits)
+    after, tried = found.after, judged.sample
+    assert (tried.mean, tried.sigma, tried.p0_135, tried.p99_865) == (after.mean, after.sigma, after.low, after.high)
+    assert (tried.ppk, tried.out_ppm, tried.out_ppm_95) == (after.ppk, after.out_ppm, after.out_ppm_95)
+    assert judged.judged.verdict == after.verdict == "NOT OK"
+    assert found.limits_before == [15.0, None]
+    assert (found.lower_limit, found.upper_limit) == pytest.approx((36.0, 70.0), rel=1e-12)
+    low, high = ((judged.good < 36.0).mean(), (judged.good > 70.0).mean())
+    assert tried.out_ppm == pytest.approx(1e6 * (low + high), rel=1e-12)
+    assert tried.out_ppm != found.before.out_ppm
+    assert min(low, high) > 0.0
+    for words in (">NOT OK</p>", "limits 36 to 70 µm", f"{1e-4 * (tried.out_ppm or 0.0):.4g} %"):
+        assert words in card["answer"]
+    assert {key: told["now"] for key, told in card["limits"].items()} == {
+        "lower_limit": "36 µm",
+        "upper_limit": "70 µm",
+    }
+    for words in ("LSL 36 µm", "USL 70 µm"):
+        assert words in card["chart"]
+        assert words in own.estimate(asked(now))["chart"]
+    assert own.card(asked())["answer"] == scene
+
+    told = own.keep(asked(now))
+    changed = [
+        "-    lower_limit: 15 um  # the paper's lower limit",
+        "+    lower_limit: 36 um  # the paper's lower limit",
+        "+    upper_limit: 70 um",
+    ]
+    assert diff_lines(told)[-3:] == changed
+    aside = {"limits: normal backlash": "none..", CENTRE: "x0.5"}
+    own.keep(asked(now, write=True, digest=told["digest"], beside=[aside]))
+    assert own.scene(asked())["notes"]["beside"] == [aside | {CENTRE: "±10 µm"}]
+    run = run_scene(path_of(own), overrides=Overrides(witness=0), out=tmp_path / "run")
+    summary = run.found.measures[BACKLASH]
+    assert summary.limits == pytest.approx((36.0, 70.0), rel=1e-12)
+    for kept in (summary.shares, sample(own)):
+        assert numbers(kept) == pytest.approx(numbers(tried), rel=DIGITS)
+    assert JudgedMeasure.of(summary) == judged.judged
+
+
+def test_a_limit_can_be_left_out_and_comes_back(pair: Questions) -> None:
+    none = answered(pair, {"limits: normal backlash": "none.."})
+    assert ">no limits</p>" in none["answer"]
+    assert none["limits"]["lower_limit"] == {"now": "none", "scene": "15 µm", "is": True}
+    assert none["limits"]["upper_limit"] == {"now": "", "scene": "", "is": True}
+    assert "LSL" not in none["chart"]
+    assert answered(pair, {})["limits"]["lower_limit"]["now"] == "15 µm"
+    other = pair.card(asked({"limits: lost motion": "..9 arcmin"}))
+    assert {**other, "written": {}} == answered(pair, {}), "limits of another measure"
+    with pytest.raises(InputError, match="expected a lower limit below the upper one, got 15 um and 9 um"):
+        pair.card(asked({"limits: normal backlash": "..9 um"}))
+
+
+FITTED = TEXT.replace("{kind: normal, lower: -20 um, upper: 20 um}", "{fit: js7, of: 172.5 mm}").replace(
+    "parts:", "default_law: {kind: normal, sigmas: 3}\nparts:", 1
+)
+
+
+def test_a_class_of_a_drawing_is_a_value_of_a_field(tmp_path: Path) -> None:
+    """js7 of 172.5 mm is ±20 µm, k6 +3 to +28, js8 ±31.5: ISO 286-2, tables 18 and 19."""
+    questions = opened(tmp_path, FITTED)
+    first = questions.sliders(asked())["sliders"]
+    assert "js7: ±20 µm" in first
+    assert 'value="js7"' in first
+    assert [f'<option value="{own}">' in first for own in ("js5", "js6", "js7", "js8")] == [False, True, True, True]
+    halved = {CENTRE: "x0.44"}
+    moved = questions.sliders(asked(halved))["sliders"]
+    assert 'value="±8.8 µm"' in moved
+    assert '<span class="was">was </span>js7: ±20 µm' in moved
+    kept = questions.keep(asked(halved))
+    assert [line.strip() for line in diff_lines(kept)] == [
+        "-    distribution: {fit: js7, of: 172.5 mm}",
+        "+    distribution: ±0.0088 mm",
+    ]
+    for value, words, limits in (("k6", "k6: +28/+3 µm", (0.003, 0.028)), ("js8", "js8: ±31.5 µm", (-0.0315, 0.0315))):
+        now = {CENTRE: value}
+        assert questions.card(asked(now))["written"] == {CENTRE: value}
+        assert words in questions.sliders(asked(now))["sliders"]
+        law: Any = questions.session(SCENE).changed(now).drawn_by(CENTRE).distribution
+        assert law.limits == pytest.approx(limits, rel=1e-12)
+        kept = questions.keep(asked(now))
+        assert diff_lines(kept)[1] == f"+    distribution: {{fit: {value}, of: 172.5 mm}}"
+    with pytest.raises(InputError, match="expected"):
+        questions.card(asked({CENTRE: "js77"}))
+    with pytest.raises(InputError, match="no nominal size at which a class could be read, got 'H7'"):
+        questions.card(asked({"bearing clearance": "H7"}))
+    questions.close()
+
+
+def test_moves_of_what_is_no_longer_in_the_scene_are_dropped_with_a_sentence(own: Questions) -> None:
+    now = {
+        CENTRE: "±31 um",
+        "bearing clearance": "x1.1",
+        "limits: lost motion": "..9 arcmin",
+        "wheel eccentricity": "x2",
+    }
+    own.notes(asked(now, beside=[{CENTRE: "x2"}, {"bearing clearance": "x1.05"}], measure=MOTION))
+    text = TEXT.replace("  centre distance:", "  distance of centres:").replace("  lost motion:", "  motion lost:")
+    path_of(own).write_text(text, "utf-8")
+    found = own.scene(asked())
+    assert found["notes"]["now"] == {"bearing clearance": "x1.1", "wheel eccentricity": "x2"}
+    assert found["notes"]["beside"] == [{"bearing clearance": "x1.05"}]
+    assert found["dropped"] == [
+        "centre distance is no longer in the scene: its move was dropped.",
+        "lost motion is no longer in the scene: its move was dropped.",
+    ]
+    own.card(asked(found["notes"]["now"]))
+    narrower = text.replace("lower: 2 um, upper: 30 um", "lower: 0 um, upper: 30 um")
+    path_of(own).write_text(narrower, "utf-8")
+    sentence = own.scene(asked())["dropped"][1]
+    assert sentence.startswith("bearing clearance can no longer be × 1.1: its move was dropped (")
+
+
 def test_an_estimate_is_near_what_is_simulated(pair: Questions) -> None:
     """One of slopes at kept builds: the pair's own second order is thousandths of its spread."""
     session = pair.session(SCENE)
@@ -129,9 +272,8 @@ def test_an_estimate_is_near_what_is_simulated(pair: Questions) -> None:
 def test_what_is_kept_is_one_line_of_the_file(own: Questions) -> None:
     told = own.keep(asked(WIDER))
     assert path_of(own).read_text("utf-8") == TEXT, "asked for, not written"
-    changed = [line for line in told["diff"].splitlines() if line[0] in "+-" and line[:3] not in ("+++", "---")]
     old, new = "{kind: normal, lower: -20 um, upper: 20 um}", "{kind: normal, lower: -33 um, upper: 33 um}"
-    assert changed == [f"-    distribution: {old}", f"+    distribution: {new}"]
+    assert diff_lines(told) == [f"-    distribution: {old}", f"+    distribution: {new}"]
     assert own.notes(asked(WIDER)) == {}
     again = own.keep(asked(WIDER, write=True, digest=told["digest"]))
     assert path_of(own).read_text("utf-8") == TEXT.replace(old, new)
@@ -252,6 +394,10 @@ def test_sliders_are_sorted_by_the_shares_of_a_run_and_end_where_a_tolerance_can
     lines = [part.partition('"')[0] for part in told["sliders"].split('<li data-line="')[1:]]
     (run,) = (own.result() for own in pair.runs.values())
     shares = {own.name: own.geometric_percent or 0.0 for own in run.found.measures[BACKLASH].contributors}
+    low, high, at = (
+        int(own) for own in re.findall(rf'min="(-\d+)" max="(\d+)" value="(\d+)"[^>]*"{CENTRE}"', told["sliders"])[0]
+    )
+    assert (1.01**at, 1.01**low, 1.01**high) == pytest.approx((1.65, 0.25, 4.0), rel=0.01)
     moved = [part.partition('"')[0] for part in told["sliders"].split('<li class="moved" data-line="')[1:]]
     assert moved == [CENTRE]
     assert lines == sorted([*{*shares} - {CENTRE}], key=lambda name: -shares[name])

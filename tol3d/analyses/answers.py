@@ -31,6 +31,8 @@ from tol3d.analyses.shown_what_if import what_if_table
 from tol3d.analyses.side_by_side import methods as found_side_by_side
 from tol3d.analyses.side_by_side import trials_of
 from tol3d.analyses.stated_changes import change_of, changed, factor_of, slips
+from tol3d.analyses.stated_classes import sizes_of
+from tol3d.analyses.stated_limits import limits_of_text
 from tol3d.analyses.subject import Subject, subject_of
 from tol3d.analyses.sweep_table import sweep_report, whole_table
 from tol3d.analyses.tolerance_effects import Effects
@@ -229,6 +231,7 @@ def what_if(
     *,
     set: Texts = (),
     factor: Texts = (),
+    limits: Texts = (),
     measure: str | None = None,
     trials: int | None = None,
     draws: int = 4800,
@@ -245,7 +248,8 @@ def what_if(
         subject: a scene or a run, its path, or the name of a bundled scene.
         set: other tolerances by name, such as {"centre distance": "±10 um"}.
         factor: factors on the widths of other tolerances, by name.
-        measure: its name; default: all that depend on the changed tolerances.
+        limits: other limits of measures by name, such as {"normal backlash": "10 um..40 um"}.
+        measure: its name; default: all that depend on the changed tolerances, and those with other limits.
         trials: of the simulation; default: the study's.
         draws: of importance sampling, for each limit.
         quick: True for rates and first order alone, without a simulation.
@@ -258,17 +262,21 @@ def what_if(
         InputError: no such tolerance, measure or value, or none on which a measure depends.
     """
     with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
-        changes = [change_of(response, text) for text in _texts(set)]
+        sizes = sizes_of(analysed.scene, analysed.simulation.lines)
+        changes = [change_of(response, text, sizes) for text in _texts(set)]
         changes += [factor_of(response, text) for text in _texts(factor)]
+        others = [limits_of_text(response, text) for text in _texts(limits)]
         warnings = tuple(slips(response, changed(response, changes)))
         for words in warnings:
             warn(words)
         trials, draws = (0, 0) if quick else (trials, draws)
-        result = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=tell)
+        result = found_before_after(
+            response, changes, measure, limits=others, trials=trials, draws=draws, seed=seed, activity=tell
+        )
     numbers = {name: what_if_table(each) for name, each in result.measures.items()}
 
     def write() -> Scene:
-        return scene_with(response, analysed.scene, changes)
+        return scene_with(response, analysed.scene, changes, others)
 
     kept = _kept(analysed, "what-if", result, lambda page: numbers)
     return OtherTolerances(*kept, warnings, before=lambda: analysed.scene, write=write)

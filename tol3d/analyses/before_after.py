@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import Field
 from scipy.special import ndtr
 
+from tol3d.analyses.compared_builds import limits_of as both_limits
 from tol3d.analyses.design_points import design_points
 from tol3d.analyses.limit_state import LimitState, Side
 from tol3d.analyses.rare_events import DRAWS, rare_event
@@ -21,8 +22,10 @@ from tol3d.analyses.rates import rates_of
 from tol3d.analyses.response import Response
 from tol3d.analyses.results import results_of
 from tol3d.analyses.stated_changes import Change, changed, known, told
+from tol3d.analyses.stated_limits import OtherLimits, limited
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
+from tol3d.report.number import limits_text
 from tol3d.statistics.estimates.limits import CONFIDENCE, Proportion
 from tol3d.study.effects.acting_contributors import looked_at
 from tol3d.study.runs.summary.judged import JudgedMeasure, demand_of
@@ -33,6 +36,7 @@ from tol3d.study.runs.summary.values import (
     Count,
     Known,
     KnownNumbers,
+    KnownRange,
     Label,
     Maybe,
     Number,
@@ -106,8 +110,11 @@ class MeasureWhatIf(Section):
     """A measure before and after."""
 
     unit: Label
-    lower_limit: Known
+    lower_limit: Known = Field(description="after, as the other one")
     upper_limit: Known
+    limits_before: Maybe[KnownRange] = Field(
+        default=LEFT_OUT, description="lower and upper limit of the scene, where others are tried"
+    )
     edges: KnownNumbers
     before: StateNumbers
     after: StateNumbers
@@ -160,6 +167,7 @@ def what_if(
     changes: Sequence[Change],
     measure: str | None = None,
     *,
+    limits: Sequence[OtherLimits] = (),
     trials: int | None = None,
     draws: int = DRAWS,
     seed: int = 1,
@@ -170,7 +178,8 @@ def what_if(
     Args:
         response: with the tolerances of the scene.
         changes: one per line of the scene.
-        measure: its name; default all that depend on them.
+        measure: its name; default all that depend on them, and those with other limits.
+        limits: other limits of measures, by which values after are judged.
         trials: of the simulation; default the study's, 100 000 at most; 0 for none.
         draws: of importance sampling, for each limit before and after; 0 for none.
         seed: of importance sampling; trials have the study's.
@@ -179,11 +188,12 @@ def what_if(
     Raises:
         InputError: no change, one that cannot be, or no measure that depends on them.
     """
-    if not changes:
+    if not changes and not limits:
         raise InputError("expected a change such as --set NAME=±10um or --factor NAME=0.5, got none")
-    asked = response.of(*_concerned(response, changes, measure))
+    asked = response.of(*_concerned(response, changes, limits, measure))
     before, count = asked.evaluations, min(asked.simulation.study.trials if trials is None else trials, MOST_TRIALS)
     states = {"before": asked, "after": changed(asked, changes)}
+    judged = {"before": asked.measures, "after": limited(asked.measures, limits)}
     activity("rates")
     rates = rates_of(asked)
     sampled, results = dict[str, Array](), dict[str, Mapping[str, Sample]]()
@@ -194,7 +204,7 @@ def what_if(
             drawn = own.drawn(count)
             read = own.values(*drawn)
             sampled[word] = np.where(read.seated, read.values, np.nan)
-            results[word] = results_of(own, *drawn, read)
+            results[word] = results_of(own, *drawn, read, measures=judged[word])
     found = {}
     for k, one in enumerate(asked.measures):
         values = {word: own[:, k] for word, own in sampled.items()}
@@ -203,12 +213,15 @@ def what_if(
         for word, own in states.items():
             activity(f"{one.name}, limits {word}")
             alone, sigma = own.of(one.name), float(rates.sigmas(own)[k])
-            both[word] = _numbers(alone, sigma, values[word], results[word].get(one.name), edges, draws, seed)
+            sides = limits_of(judged[word][k])
+            both[word] = _numbers(alone, sides, sigma, values[word], results[word].get(one.name), edges, draws, seed)
+        were, are = (both_limits(own[k]) for own in judged.values())
         found[one.name] = made(
             MeasureWhatIf,
             unit=one.unit,
-            lower_limit=limits_of(one).get("low"),
-            upper_limit=limits_of(one).get("high"),
+            lower_limit=are[0],
+            upper_limit=are[1],
+            **({} if were == are else {"limits_before": [*were]}),
             edges=edges.tolist(),
             before=both["before"],
             after=both["after"],
@@ -221,6 +234,10 @@ def what_if(
         each = f", each of {1 + len(others)}" if others else ""
         laws = {word: told(by_name[first], own.drawn_by(first)) + each for word, own in states.items()}
         rows.append(made(ChangeMade, contributor=line, **laws))
+    for one, other in zip(asked.measures, judged["after"], strict=True):
+        if other is not one:
+            words = [limits_text(*both_limits(each), one.unit) for each in (one, other)]
+            rows.append(made(ChangeMade, contributor=f"limits of {one.name}", before=words[0], after=words[1]))
     return made(
         WhatIf,
         changes=rows,
@@ -232,16 +249,23 @@ def what_if(
     )
 
 
-def _concerned(response: Response, changes: Sequence[Change], measure: str | None) -> list[str]:
-    """Measures that depend on changed contributors, or on what reads these."""
+def _concerned(
+    response: Response, changes: Sequence[Change], limits: Sequence[OtherLimits], measure: str | None
+) -> list[str]:
+    """Measures that depend on changed contributors, or on what reads these, and those with other limits."""
     names = {name for change in changes for name in response.lines[known(response, change.name, change.name)]}
     system = response.simulation.system
     names |= {contributor.name for contributor in system.contributors if names & set(reads_of(contributor))}
     asked = response.measures if measure is None else response.of(measure).measures
-    found = [own.name for own in asked if names & {each.name for each in response.acting(own)}]
+    with_others = [own.measure for own in limits]
+    found = [
+        own.name
+        for own in asked
+        if own.name in with_others or names & {each.name for each in (response.acting(own) if names else ())}
+    ]
     if not found:
         which = "a measure" if measure is None else repr(measure)
-        changed_ones = ", ".join(change.name for change in changes)
+        changed_ones = ", ".join([*(change.name for change in changes), *with_others])
         builds = [looked_at(response.simulation, response.source(own)).builds for own in asked]
         how = f"; not seen to act in {min(builds)} builds" if all(builds) else ""
         raise InputError(f"expected contributors on which {which} depends, got {changed_ones}{how}")
@@ -249,10 +273,16 @@ def _concerned(response: Response, changes: Sequence[Change], measure: str | Non
 
 
 def _numbers(
-    response: Response, by_rates: float, values: Array, sample: Sample | None, edges: Array, draws: int, seed: int
+    response: Response,
+    limits: Mapping[Side, float],
+    by_rates: float,
+    values: Array,
+    sample: Sample | None,
+    edges: Array,
+    draws: int,
+    seed: int,
 ) -> StateNumbers:
     good = values[np.isfinite(values)]
-    limits = limits_of(response.measures[0])
     by_run = _of_a_run(sample, response.simulation.study.accept_ppk, limited=bool(limits)) if sample else {}
     return made(
         StateNumbers,

@@ -7,17 +7,20 @@ import numpy as np
 
 from tol3d.analyses.response import Response
 from tol3d.analyses.stated_changes import Change, changed, known, law_of
+from tol3d.analyses.stated_classes import sizes_of
+from tol3d.analyses.stated_limits import OtherLimits, limited
 from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.scene import Scene
 from tol3d.scene.bases import ToleranceEntry, ToleranceSpec
-from tol3d.scene.edit import with_tolerances
+from tol3d.scene.edit import with_limits, with_tolerances
 from tol3d.scene.splice import flow_text
 from tol3d.statistics.distributions import Distribution
 from tol3d.statistics.distributions.derived import Derived
 from tol3d.study.system.draw import Draw
 from tol3d.study.system.other_laws import Zoned, naturally_stays, scaled
 from tol3d.study.trials.simulation import Line
+from tol3d.units import Quantity
 
 CLASSES: Final = ("fit", "general", "iso_1328_2", "iso_class", "grade")
 """Keys by which a scene states limits of a standard."""
@@ -25,16 +28,25 @@ SAME: Final = 1e-9
 """Share of a tolerance by which limits may differ that are the same: ten digits are written."""
 
 
-def scene_with(response: Response, scene: Scene, changes: Sequence[Change], *, physical: bool = True) -> Scene:
+def scene_with(
+    response: Response,
+    scene: Scene,
+    changes: Sequence[Change],
+    limits: Sequence[OtherLimits] = (),
+    *,
+    physical: bool = True,
+) -> Scene:
     """The scene, in its text too, whose simulation draws what `changed(response, changes)` draws, to ten digits.
 
     Values are changed where they stand, in their units and words; limits of a standard, such as `{fit: H7, …}`, become
-    numbers, see `in_numbers`. A tolerance of an included file is written into the scene, for each of its includes.
+    numbers, see `in_numbers`, or those of another class where that is asked for. A tolerance of an included file is
+    written into the scene, for each of its includes.
 
     Args:
         response: of the scene, with its own tolerances.
         scene: the scene.
         changes: one per line of the scene.
+        limits: other limits of measures; of an end of a curve those of the curve.
         physical: see Response.scaled.
 
     Raises:
@@ -43,7 +55,7 @@ def scene_with(response: Response, scene: Scene, changes: Sequence[Change], *, p
     changed(response, changes, physical=physical)
     lines = {line.name: line for line in response.simulation.lines}
     by_line = {known(response, change.name, change.name): change for change in changes}
-    specs: dict[str, ToleranceEntry] = {}
+    sizes, specs = sizes_of(scene, lines.values()), dict[str, ToleranceEntry]()
     for name, change in by_line.items():
         line = lines.get(name, Line(name, ()))
         if not line.entries:
@@ -52,13 +64,20 @@ def scene_with(response: Response, scene: Scene, changes: Sequence[Change], *, p
         draw = response.drawn_by(line.contributors[0])
         for entry in line.entries:
             try:
-                specs[entry] = _stated(scene.tolerances[entry], change, draw, scene.files)
+                specs[entry] = _stated(scene.tolerances[entry], change, draw, sizes.get(name), scene.files)
             except InputError as error:
                 raise InputError(f"{entry}: {error}") from None
-    return with_tolerances(scene, specs)
+    kept = with_tolerances(scene, specs) if specs else scene
+    others = dict[str, dict[str, Quantity | None]]()
+    measures = limited(response.of(*(own.measure for own in limits)).measures, limits)
+    for own, measure in zip(limits, measures, strict=True):
+        others.setdefault(response.source(measure).name, {}).update(own.stated)
+    return with_limits(kept, others) if others else kept
 
 
-def _stated(spec: ToleranceEntry, change: Change, draw: Draw, files: Files) -> ToleranceEntry:
+def _stated(spec: ToleranceEntry, change: Change, draw: Draw, size: Quantity | None, files: Files) -> ToleranceEntry:
+    if change.of_class and size is not None and isinstance(spec, ToleranceSpec) and spec.distribution.between:
+        return spec.of_class(change.of_class, size)
     spec = spec.in_numbers(draw)
     if change.factor is not None:
         return spec.scaled(change.factor, change.stays or naturally_stays(draw), files)
@@ -104,7 +123,7 @@ def _numbered(before: Any, after: Any) -> Iterator[str]:
     if not isinstance(before, dict) or before == after:
         return
     for key in CLASSES:
-        if key in before and not (isinstance(after, dict) and key in after):
+        if key in before and not (isinstance(after, dict) and after.keys() & {*CLASSES}):
             was = before[key] if isinstance(before[key], str) else f"{key} {before[key]}"
             yield f"{after if isinstance(after, str) else flow_text(after)}, was {was}"
             return

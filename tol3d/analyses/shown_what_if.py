@@ -64,7 +64,7 @@ def _answer(name: str, measure_what_if: MeasureWhatIf) -> Line:
     told = [
         f"sigma {_named(before, measure_what_if.unit)} → {_named(after, measure_what_if.unit)}{_percent(before, after)}"
     ]
-    if measure_what_if.before.limits:
+    if measure_what_if.before.limits or measure_what_if.after.limits:
         told.append(f"out of limits {_out(measure_what_if.before)} → {_out(measure_what_if.after)}")
     if measure_what_if.before.ppk is not None and measure_what_if.after.ppk is not None:
         told.append(f"Ppk {measure_what_if.before.ppk:.2f} → {measure_what_if.after.ppk:.2f}")
@@ -87,6 +87,8 @@ def _percent(before: float, after: float) -> str:
 
 def _out(state_numbers: StateNumbers) -> str:
     """Fraction beyond all limits; with those beyond which none was found at the bound that this leaves."""
+    if not state_numbers.limits:
+        return NOTHING
     ppm = [_first(limit.ppm, limit.first_order) for limit in state_numbers.limits.values()]
     known = [each for each in ppm if each is not None]
     if len(known) < len(ppm):
@@ -100,18 +102,18 @@ def _out(state_numbers: StateNumbers) -> str:
 
 def _unseen(name: str, measure_what_if: MeasureWhatIf) -> Iterator[str]:
     """Sentences on limits beyond which no build was found, with their distances by slopes."""
-    for side, limit in (("low", measure_what_if.lower_limit), ("high", measure_what_if.upper_limit)):
-        states = {
-            word: state
-            for word, state in (("before", measure_what_if.before), ("after", measure_what_if.after))
-            if limit is not None
+    for side, *both in _sides(measure_what_if):
+        known = zip(("before", "after"), (measure_what_if.before, measure_what_if.after), both, strict=True)
+        unseen = {
+            word: (state, limit)
+            for word, state, limit in known
+            if limit is not None and state.limits[side].below is not None
         }
-        unseen = {word: state for word, state in states.items() if state.limits[side].below is not None}
-        if not unseen or limit is None:
+        if not unseen:
             continue
         away = [
             f"{word} {abs(limit - state.mean) / state.sigma_by_rates:.3g}"
-            for word, state in unseen.items()
+            for word, (state, limit) in unseen.items()
             if state.mean is not None and state.sigma_by_rates
         ]
         slopes = f"; by slopes it lies sigmas away: {', '.join(away)}" if away else ""
@@ -150,21 +152,32 @@ def what_if_table(measure_what_if: MeasureWhatIf) -> Table:
                 BeforeAfter(formed(measure_what_if.before.failed, "d"), formed(measure_what_if.after.failed, "d"), ""),
             )
         )
-    for side, limit in (("low", measure_what_if.lower_limit), ("high", measure_what_if.upper_limit)):
-        if limit is not None:
-            sign = "<" if side == "low" else ">"
-            rows += _limit(
-                f"{sign} {limit_text(limit, unit)}",
-                measure_what_if.before.limits[side],
-                measure_what_if.after.limits[side],
-            )
+    for side, *both in _sides(measure_what_if):
+        sign = "<" if side == "low" else ">"
+        words = [NOTHING if limit is None else limit_text(limit, unit) for limit in both]
+        if words != [NOTHING, NOTHING]:
+            label = f"{sign} {_label(*words)}"
+            states = (measure_what_if.before, measure_what_if.after)
+            rows += _limit(label, *(state.limits.get(side, NO_LIMIT) for state in states))
     return declared_table("", rows)
+
+
+def _label(before: str, after: str) -> str:
+    if before == NOTHING or after == NOTHING:
+        return f"{after}, none before" if before == NOTHING else f"{before}, none after"
+    return after if before == after else f"{before} → {after}"
+
+
+def _sides(measure_what_if: MeasureWhatIf) -> Iterator[tuple[str, float | None, float | None]]:
+    """Each side with its limit before and after."""
+    after = (measure_what_if.lower_limit, measure_what_if.upper_limit)
+    yield from zip(("low", "high"), measure_what_if.limits_before or after, after, strict=True)
 
 
 def _limit(label: str, before: LimitNumbers, after: LimitNumbers) -> Iterator[tuple[str, BeforeAfter]]:
     first = (before.first_order, after.first_order)
     yield f"{label}, first order [ppm]", BeforeAfter(_ppm(first[0]), _ppm(first[1]), _times(*first))
-    if before.ppm is None or after.ppm is None or before.interval is None or after.interval is None:
+    if before.ppm is None and after.ppm is None:
         return
     sampled = BeforeAfter(_bounded(before), _bounded(after), _times(before.ppm, after.ppm))
     yield f"{label}, by sampling [ppm]", sampled
@@ -195,6 +208,7 @@ def _times(before: float | None, after: float | None) -> str:
     return f"× {after / before:.3g}" if before and after is not None else "–"
 
 
+NO_LIMIT: Final = LimitNumbers(first_order=None, ppm=None, interval=None, beta=None, below=None)
 MOST: Final = 8
 """Measures that are drawn."""
 

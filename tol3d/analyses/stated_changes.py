@@ -1,11 +1,12 @@
 """Other tolerances as a user states them: limits, a scale or a width by contributor, or a factor."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 from tol3d.analyses.response import Response
+from tol3d.analyses.stated_classes import NO_SIZES, class_limits, is_class
 from tol3d.errors import InputError
 from tol3d.scene.nearest import hint
 from tol3d.statistics.distributions import Distribution
@@ -17,7 +18,7 @@ from tol3d.study.system.other_laws import Zoned
 from tol3d.units import UNITS, Quantity, expectation
 
 RANGE: Final = re.compile(r"(?P<low>.*[^.\s])\s*\.\.\s*(?P<high>[^.].*|\.\d.*)")
-EXAMPLES: Final = "±10 um, +0.02/0 mm, -5 um..+10 um, or 5 um of a zone or a scale"
+EXAMPLES: Final = "±10 um, +0.02/0 mm, -5 um..+10 um, H7 of a size, or 5 um of a zone or a scale"
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,7 @@ class Change:
         size: new size of its zone, or of a law stated by one number.
         factor: on its width.
         stays: which limit does, where it is scaled; default: see study/system/other_laws.py, `naturally_stays`.
+        of_class: the class of ISO 286 that its limits are of; "" for none.
     """
 
     name: str
@@ -37,10 +39,16 @@ class Change:
     size: float | None = None
     factor: float | None = None
     stays: Stays | None = None
+    of_class: str = ""
 
 
-def change_of(response: Response, text: str) -> Change:
-    """Change by `--set NAME=VALUE`: `±10um`, `+0.02/0 mm`, `-5 um..+10 um`, `5 um`.
+def change_of(response: Response, text: str, sizes: Mapping[str, Quantity] = NO_SIZES) -> Change:
+    """Change by `--set NAME=VALUE`: `±10um`, `+0.02/0 mm`, `-5 um..+10 um`, `5 um`, or `H7` of a known size.
+
+    Args:
+        response: with the tolerances of the scene.
+        text: as described.
+        sizes: nominal ones by line, at which a class is read.
 
     Raises:
         InputError: no such contributor, or no such value of it.
@@ -48,6 +56,8 @@ def change_of(response: Response, text: str) -> Change:
     name, value = _split(response, "--set", text)
     contributor = next(own for own in response.contributors if own.name == response.lines[name][0])
     try:
+        if is_class(value):
+            return Change(name, limits=class_limits(value, sizes.get(name)), of_class=value)
         pair = limits_written(value)
     except InputError as error:
         raise InputError(f"--set {text!r}: {error}") from None

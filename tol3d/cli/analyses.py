@@ -32,6 +32,10 @@ def what_if(
     factor: Annotated[
         list[str] | None, typer.Option(metavar="NAME=NUMBER", help='Such as "centre distance"=0.5: half as wide.')
     ] = None,
+    limits: Annotated[
+        list[str] | None,
+        typer.Option(metavar="MEASURE=LOW..HIGH", help='Such as "normal backlash"="10um..40um"; or one of them.'),
+    ] = None,
     measure: Annotated[str | None, typer.Option(help="Which; all that depend on what changes.")] = None,
     trials: Annotated[
         Any, typer.Option(parser=whole(2), metavar="N", help="Of the simulation, instead of the study's.")
@@ -53,7 +57,7 @@ def what_if(
 
     own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
     words: dict[str, Any] = {"measure": measure, "trials": trials, "draws": draws, "quick": quick, "seed": seed}
-    words |= {"set": changed or (), "factor": factor or (), "warn": warn}
+    words |= {"set": changed or (), "factor": factor or (), "limits": limits or (), "warn": warn}
     found = answer("what-if", own, "what if", lambda activity: ask(own, **words, activity=activity), csv, picture)
     if out is not None:
         _write(found, out)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Final, Protocol, runtime_checkable
 
 from tol3d.report.declared import declared_table
+from tol3d.report.number import signed_units
 from tol3d.report.page import Page, PageItem, Table, line, note, page, some, titled, warning
 from tol3d.report.presenter import Presenter, presenter_at
 from tol3d.report.system_check import law_name
@@ -122,9 +123,7 @@ def _drawn(scene: Scene) -> Iterator[tuple[str, DistributionSpec]]:
 def _row(law: DistributionSpec, name: str) -> DrawnRow:
     """Its limits as drawn, and as numbers, with the signs of their units."""
     given = law.quantities()
-    drawn, lower, upper = (
-        str(text).replace(" um", " µm") for text in (_told(law.drawn), given["lower"], given["upper"])
-    )
+    drawn, lower, upper = (signed_units(str(text)) for text in (_told(law.drawn), given["lower"], given["upper"]))
     return DrawnRow(drawn, lower, upper, name)
 
 

@@ -30,6 +30,7 @@ from tol3d.report.column import QUANTILES_MEAN, Column, Ends, columns_of, is_bou
 from tol3d.report.heading import heading, position_of
 from tol3d.report.number import UNIT_SIGNS, limit_text, measured_text, share_text, short_text
 from tol3d.study.runs.summary.measure import MeasureSummary
+from tol3d.study.runs.summary.sample import LimitShares
 from tol3d.study.runs.summary.values import Section
 
 SIGMAS_SHOWN: Final = 3.6  # of the mean; a little more than the +-3 sigma that are marked
@@ -81,7 +82,7 @@ def histogram(name: str, measure: MeasureSummary, roles: Mapping[str, Role] | No
     series += [Outline(own.edges, own.density, roles[heading]) for heading, own in published.items()]
     peak = max(float(own.density.max()) for own in (*bars.values(), *published.values()))
     peak = max([peak, *(min(float(own.y.max()), MOST_ROOM * peak) for own in series if isinstance(own, Line))])
-    ends, limits = [*_ends(measure)], [*limit_marks(measure)]
+    ends, limits = [*_ends(measure)], [*limit_marks(measure.limits, measure.shares, measure.unit)]
     values = Panel(Axis(f"% of trials per {UNIT_SIGNS[unit]}", 0.0, ROOM * peak or 1.0), series, [*ends, *limits])
     columns = ranged(measure)
     rows = Panel(
@@ -170,13 +171,18 @@ def _ends(measure: MeasureSummary) -> Iterator[Mark]:
         yield Mark(value, "end", (word, (short_text if apart else measured_text)(value, measure.unit)))
 
 
-def limit_marks(measure: MeasureSummary) -> Iterator[Mark]:
-    """Limits with the fraction of trials beyond each."""
-    shares = measure.shares
+def limit_marks(limits: Sequence[float | None], shares: LimitShares, unit: str) -> Iterator[Mark]:
+    """Limits with the fraction of trials beyond each.
+
+    Args:
+        limits: lower and upper, in the unit; None for none.
+        shares: of the trials beyond them.
+        unit: of the limits.
+    """
     sides = (("LSL", "below", shares.below_limit_ppm), ("USL", "above", shares.above_limit_ppm))
-    for limit, (word, side, ppm) in zip(measure.limits, sides, strict=True):
+    for limit, (word, side, ppm) in zip(limits, sides, strict=True):
         if limit is not None:
-            words = (f"{word} {limit_text(limit, measure.unit)}", out_text(ppm, side))
+            words = (f"{word} {limit_text(limit, unit)}", out_text(ppm, side))
             yield Mark(limit, "limit", words, upper=side == "above", label=OUT_OF_LIMITS)
 
 
@@ -277,7 +283,7 @@ def curve(name: str, measure: MeasureSummary) -> Chart:
         series.append(Line(x, stepped(analytic.mean), "analytic", "analytic, mean", "dashed"))
     series += _published_means(measure)
     marks = [*_jumps(measure, stepped.jumps)]
-    limits = [*limit_marks(measure)]
+    limits = [*limit_marks(measure.limits, measure.shares, measure.unit)]
     marks += [replace(limit, words=limit.words[:1], upright=False, label=limit.words[0]) for limit in limits]
     reach = [mean - 3 * sigma, mean + 3 * sigma, lowest, highest, np.array([limit.value for limit in limits])]
     table = [(f"{word}, smallest mean", short_text(float(np.nanmin(mean)), measure.unit))]

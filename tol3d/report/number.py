@@ -1,6 +1,7 @@
 """Numbers as a reader wants them: lengths in um, those at an arm's tip in mm, angles in minutes and seconds of arc."""
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Final
 
@@ -9,6 +10,7 @@ from tol3d.units import FACTORS, RAD_PER_ARCMIN, angle_text
 
 NOTHING: Final = "–"
 UNIT_SIGNS: Final = {"um": "µm", "mm": "mm", "arcmin": "′", "mrad": "mrad", "K": "K", "1": "1", "pins": "pins"}
+MICROMETRES: Final = re.compile(r"(?<=[\s\d])um\b")
 COUNTED: Final = frozenset(FACTORS["count"])
 MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
 MANY_MM: Final = 100.0  # mm; from there on six digits are too few for a tenth of a um
@@ -132,6 +134,15 @@ def with_unit(text: str, unit: str) -> str:
     if unit == "arcmin":
         return text
     return f"{text} {unit.removesuffix('s') if unit in COUNTED and text == '1' else UNIT_SIGNS[unit]}"
+
+
+def signed_units(text: str) -> str:
+    """A sentence with the signs of units where it has a scene's words for them.
+
+    >>> signed_units("expected at least 0 um, got down to -5um")
+    'expected at least 0 µm, got down to -5µm'
+    """
+    return MICROMETRES.sub(UNIT_SIGNS["um"], text)
 
 
 def tip_mm(arcmin: float | None, lever_mm: float | None) -> float | None:

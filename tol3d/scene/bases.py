@@ -8,7 +8,7 @@ Common base of every kind of tolerance.
 """
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
@@ -21,7 +21,7 @@ from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
 from tol3d.statistics.distributions import Distribution, DistributionSpec, StatedDistribution
 from tol3d.statistics.distributions.base import Stays
-from tol3d.statistics.distributions.drawn import restated
+from tol3d.statistics.distributions.drawn import in_class, restated, tolerated_size
 from tol3d.strict import Strict, refused
 from tol3d.units import Dimension, Of, Positive, Quantity, refuse_dimension
 
@@ -188,6 +188,18 @@ class ToleranceSpec(ToleranceEntry):
     @override
     def nominal(self) -> str:
         return "nominal"
+
+    def nominal_size(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Quantity | None:
+        """The size that is tolerated, at which classes of ISO 286 are read; None where the scene states none.
+
+        Args:
+            parts, moves: of the scene.
+        """
+        return tolerated_size(self.distribution.drawn)
+
+    def of_class(self, tolerance_class: str, size: Quantity) -> Self:
+        """The tolerance as a scene writes it, by a class of ISO 286; its law is stated by limits on a drawing."""
+        return self.model_copy(update={"distribution": in_class(self.distribution, tolerance_class, size)})
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Files that its law reads."""

@@ -1,4 +1,4 @@
-"""A scene's file with other tolerances in it: the rest stays as it was written, comments too."""
+"""A scene's file with other tolerances and limits in it: the rest stays as it was written, comments too."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -12,7 +12,7 @@ from tol3d.scene.load import read_scene
 from tol3d.scene.place import KeyPath
 from tol3d.scene.schema import Scene
 from tol3d.scene.splice import INDENT, flow_text, spliced, written_values
-from tol3d.units import MICRO_SIGNS, NUMBER_UNIT
+from tol3d.units import MICRO_SIGNS, NUMBER_UNIT, Quantity
 
 Tolerances = Mapping[str, ToleranceEntry]
 
@@ -26,6 +26,29 @@ def with_tolerances(scene: Scene, changed: Tolerances) -> Scene:
     """A scene with some tolerances changed or added, in its text too: results are kept by that."""
     text = _edited(scene, changed)
     own = scene.model_copy(update={"tolerances": {**scene.tolerances, **changed}})
+    return own.read_from(replace(scene.origin, text=text))
+
+
+def with_limits(scene: Scene, changed: Mapping[str, Mapping[str, Quantity | None]]) -> Scene:
+    """A scene with other limits of some measures, in its text too.
+
+    Args:
+        scene: the scene.
+        changed: by measure and field, `lower_limit` or `upper_limit`, the limit; None for none.
+
+    Raises:
+        InputError: a measure of an included file.
+    """
+    text, measures = scene.text, dict(scene.measures)
+    for name, limits in changed.items():
+        written = (written_values(text).get("measures") or {}).get(name)
+        if written is None:
+            raise InputError(f"{name}: expected a measure of the scene, got one of an included file; change it there")
+        for field, limit in limits.items():
+            value = None if limit is None else str(limit)
+            text = spliced(text, ("measures", name, field), _as_spelt(value, written.get(field)))
+        measures[name] = measures[name].model_copy(update={**limits})
+    own = scene.model_copy(update={"measures": measures})
     return own.read_from(replace(scene.origin, text=text))
 
 

@@ -3,27 +3,39 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 
-from tol3d.analyses.before_after import limits_of
+from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.limit_state import Side
 from tol3d.analyses.response import Response
 from tol3d.analyses.scope import Scope
 from tol3d.analyses.stated_changes import told
-from tol3d.apps.workbench.session import Evaluated, Session
+from tol3d.analyses.stated_classes import class_words, is_class, neighbours
+from tol3d.analyses.stated_limits import FIELDS, NONE, changeable
+from tol3d.apps.workbench.session import LIMITS, Evaluated, Session
 from tol3d.apps.workbench.workspace import WhatIf
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.report.chart import Axis, Chart, Filled, Mark, Outline, Panel, Series
+from tol3d.report.chart import Axis, Chart, Filled, Outline, Panel, Series
 from tol3d.report.html.blocks import Inside, Markup, tag, together
 from tol3d.report.html.frame import NARROW
-from tol3d.report.html.svg import svg
-from tol3d.report.measure_charts import out_text, spanned
-from tol3d.report.number import bounded_share_text, limit_text, limits_text, measured_text, percent_text
+from tol3d.report.html.svg import heard, svg
+from tol3d.report.measure_charts import limit_marks, spanned
+from tol3d.report.number import (
+    bounded_share_text,
+    limit_text,
+    limits_text,
+    measured_text,
+    percent_text,
+    signed_units,
+    value_text,
+)
 from tol3d.report.shown_unit import LONG_UM
 from tol3d.statistics.distributions import Distribution
+from tol3d.study.runs.summary.judged import trials_to_judge
 from tol3d.study.runs.summary.measure import MeasureSummary
 from tol3d.study.runs.summary.sample import Sample
 from tol3d.study.system.contributor import Contributor
@@ -31,8 +43,12 @@ from tol3d.study.system.draw import Draw
 from tol3d.study.system.other_laws import Zoned
 
 BINS: Final = 40
-STEPS: Final = 100
-"""Steps of a slider to either side of the scene's tolerance."""
+TOGETHER: Final = 5
+"""Bars that are told as one in the histogram's table."""
+HIGH: Final = 0.45
+"""Height of the histogram, of a chart's: sliders are seen below it."""
+STEP: Final = 1.01
+"""Factor on the width by a step of a slider, as in `page/sliders.js`."""
 WIDEST: Final = 4.0
 """Factor at the ends of a slider, where nothing ends it before."""
 KINDS: Final = {"OK": "ok", "NOT OK": "not-ok", "too few trials": "open", "no limits": "none"}
@@ -94,11 +110,43 @@ def answer(base: Evaluated, now: Evaluated) -> Markup:
     failed = now.sample.trials - now.sample.count
     words = f"limits {limits_text(low, high, shown.unit)} · " if judged.verdict != "no limits" else ""
     more = f" · {failed} of them not assembled" if failed else ""
+    advice = _advice(now) if judged.verdict == "too few trials" and now.done == now.count else ""
     return together(
         tag("p", judged.verdict, class_=f"verdict {KINDS[judged.verdict]}"),
-        tag("p", f"{words}{trials}{more}", class_="dim"),
+        tag("p", tag("span", words, class_="limit-words"), f"{trials}{more}", class_="dim"),
+        tag("p", advice, class_="advice") if advice else None,
         tag("table", head, *cells),
     )
+
+
+def result(now: Evaluated) -> str:
+    """The answer in a line, to be heard."""
+    own = [*_numbers(now.sample, Shown.of(now))]
+    if now.judged.verdict != "no limits":
+        own.insert(0, ("out of limits", bounded_share_text(now.judged.out_ppm, now.judged.interval)))
+    return f"{now.judged.verdict}; " + ", ".join(f"{name} {words}" for name, words in own[:2])
+
+
+def _advice(now: Evaluated) -> str:
+    """Number of trials that would give a verdict, to two digits."""
+    enough = trials_to_judge(now.sample, now.demand, limited=now.limited)
+    if enough is None:
+        return "it lies at what is accepted: more trials will hardly tell; change a tolerance"
+    unit = 10 ** max(len(str(enough)) - 2, 0)
+    return f"about {-(-enough // unit) * unit:,} trials would tell; the study has {now.count:,}".replace(",", " ")
+
+
+def limit_fields(base: Evaluated, now: Evaluated) -> Mapping[str, Mapping[str, str | bool]]:
+    """Texts of the fields of both limits now and of the scene, "" without one, and whether they may be changed."""
+    shown, sides = Shown.of(base), changeable(base.response, base.response.measures[0])
+    found = dict[str, dict[str, str | bool]]()
+    for side, field in zip(SIDES, FIELDS, strict=True):
+        texts = [
+            "" if (limit := limits_of(own.measure).get(side)) is None else limit_text(shown.per * limit, shown.unit)
+            for own in (now, base)
+        ]
+        found[field] = {"now": texts[0] or (NONE if texts[1] else ""), "scene": texts[1], "is": field in sides}
+    return found
 
 
 def _numbers(sample: Sample, shown: Shown) -> Iterator[tuple[str, str]]:
@@ -107,7 +155,8 @@ def _numbers(sample: Sample, shown: Shown) -> Iterator[tuple[str, str]]:
         yield "Ppk", f"{sample.ppk:.2f}"
     yield "mean", shown.text(sample.mean)
     yield "sigma", spread.text(sample.sigma)
-    yield "0.135 to 99.865 %", f"{shown.text(sample.p0_135)} to {shown.text(sample.p99_865)}"
+    low = None if sample.p0_135 is None else shown.per * sample.p0_135
+    yield "0.135 to 99.865 %", f"{value_text(low, shown.unit)} to {shown.text(sample.p99_865)}"
 
 
 def histogram(base: Evaluated, now: Evaluated | None, estimate: Array | None) -> Markup:
@@ -132,7 +181,7 @@ def histogram(base: Evaluated, now: Evaluated | None, estimate: Array | None) ->
     series = list[Series]()
     if now is not None and now is not base:
         series.append(Outline(edges, _percent(base, shown, edges), "soft", "scene"))
-    limits: dict[Side, float] = {side: shown.per * own for side, own in limits_of(base.measure).items()}
+    limits: dict[Side, float] = {side: shown.per * own for side, own in limits_of(solid.measure).items()}
     middles = (edges[1:] + edges[:-1]) / 2
     beyond = (middles < limits.get("low", -math.inf)) | (middles > limits.get("high", math.inf))
     words = "simulated" if solid is now and now is not base else "scene"
@@ -140,23 +189,27 @@ def histogram(base: Evaluated, now: Evaluated | None, estimate: Array | None) ->
     if estimate is not None:
         heights = 100.0 * np.histogram(shown.per * estimate, edges)[0] / max(len(estimate), 1)
         series.append(Outline(edges, heights, "analytic", "estimate", dashed=True))
-    sample = solid.sample
-    marks = [*_marks(limits, sample, shown.unit)]
+    marks = [*limit_marks((limits.get("low"), limits.get("high")), solid.sample, shown.unit)]
     top = max(float(own.heights.max()) for own in series if isinstance(own, Filled | Outline))
     name = base.measure.name
     across = spanned(name, np.array([edges[0], edges[-1], *limits.values()]), shown.unit)
-    panel = Panel(Axis("% of trials", 0.0, 1.05 * top or 1.0), series, marks, 0.8)
-    table = [(mark.words[0], mark.words[1]) for mark in marks]
+    panel = Panel(Axis("% of trials", 0.0, 1.05 * top or 1.0), series, marks, HIGH)
+    table = [*((mark.words[0], mark.words[1]) for mark in marks), *_heard(edges, series, shown.unit)]
     chart = Chart(f"histogram of {name}", across, [panel], name, table=table)
-    return together(svg(chart, NARROW), _legend(series))
+    return together(svg(chart, NARROW), _legend(series), heard(chart))
 
 
-def _marks(limits: Mapping[Side, float], sample: Sample, unit: str) -> Iterator[Mark]:
-    """Limits with the fraction of trials beyond each."""
-    for side, limit in limits.items():
-        word, beyond = ("LSL", "below") if side == "low" else ("USL", "above")
-        ppm = sample.below_limit_ppm if side == "low" else sample.above_limit_ppm
-        yield Mark(limit, "limit", (f"{word} {limit_text(limit, unit)}", out_text(ppm, beyond)), upper=side == "high")
+def _heard(edges: Array, series: Sequence[Series], unit: str) -> Iterator[tuple[str, str]]:
+    """Bars in words, a few together: their range, and the share of the trials there."""
+    few = edges[::TOGETHER] if (len(edges) - 1) % TOGETHER == 0 else edges
+    for k, (low, high) in enumerate(pairwise(few.tolist())):
+        inside = slice(k * TOGETHER, (k + 1) * TOGETHER)
+        shares = [
+            f"{own.label} {percent_text(float(own.heights[inside].sum()))} %"
+            for own in series
+            if isinstance(own, Filled | Outline)
+        ]
+        yield f"{value_text(low, unit)} to {measured_text(high, unit)}", ", ".join(shares)
 
 
 def _percent(own: Evaluated, shown: Shown, edges: Array) -> Array:
@@ -218,16 +271,22 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
     except InputError:
         other = draw
     each = f" · each of {len(names)}" if len(names) > 1 else ""
-    words = [tag("span", f"{told(contributor, draw)}{each}", class_="dim")]
+    size, own_class, now_class = session.sizes.get(line), session.classes.get(line, ""), _class(now.get(line, ""))
+    stated = class_words(own_class, size) if own_class and size else told(contributor, draw)
+    words = [tag("span", tag("span", "was ", class_="was"), f"{stated}{each}", class_="dim")]
+    if now_class and size:
+        words.insert(0, tag("span", class_words(now_class, size), class_="class-words"))
+    offered = neighbours(now_class or own_class, size) if size else ()
+    scene_words, listed = own_class or _written(contributor, draw), "-".join(("classes", "of", *line.split()))
     if share is not None:
         words.append(tag("span", f"{percent_text(share)} %", class_="share"))
     ends = _ends(scope)
     inside = list[Inside]([tag("div", tag("b", line), *words, class_="head")])
     if ends is None:
-        inside.append(tag("p", f"stays as it is: {scope.above}", class_="note"))
+        inside.append(tag("p", f"stays as it is: {signed_units(scope.above)}", class_="note"))
     else:
         low, high = ends
-        at = round(STEPS * math.log(_factor(draw, other)) / math.log(WIDEST))
+        at = round(math.log(_factor(draw, other)) / math.log(STEP))
         inside.append(
             tag(
                 "div",
@@ -236,9 +295,11 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
                     aria_label=f"{line}: how wide", title=_why(scope),
                 ),
                 tag(
-                    "input", type="text", value=_written(contributor, other), data_line=line,
-                    aria_label=f"{line}: tolerance",
+                    "input", type="text", value=now_class or (_written(contributor, other) if moved else scene_words),
+                    data_line=line, data_scene=scene_words, aria_label=f"{line}: tolerance",
+                    list=listed if offered else None,
                 ),
+                tag("datalist", *(tag("option", value=own) for own in offered), id=listed) if offered else None,
                 class_="move",
             )
         )  # fmt: skip
@@ -249,18 +310,26 @@ def _ends(scope: Scope) -> tuple[int, int] | None:
     """Ends of a slider in its steps; None where nothing can be moved."""
     if scope.factors is None:
         return None
-    low, high = (STEPS * math.log(min(max(own, 1 / WIDEST), WIDEST)) / math.log(WIDEST) for own in scope.factors)
+    low, high = (math.log(min(max(own, 1 / WIDEST), WIDEST)) / math.log(STEP) for own in scope.factors)
     return math.ceil(low), math.floor(high)
 
 
 def written_words(session: Session, now: WhatIf) -> Mapping[str, str]:
-    """Moved tolerances as their fields show them, by line."""
+    """A what-if in words that mean the same in another scene: limits as stated, tolerances as in fields."""
     response, found = session.changed(now), dict[str, str]()
     known = {own.name: own for own in response.contributors}
-    for line in now:
+    for line, words in now.items():
+        if line.startswith(LIMITS):
+            found[line] = words
+            continue
         name = response.lines[line][0]
-        found[line] = _written(known[name], response.drawn_by(name))
+        found[line] = _class(words) or _written(known[name], response.drawn_by(name))
     return found
+
+
+def _class(words: str) -> str:
+    """The class of ISO 286 that a change states; "" for none."""
+    return words.strip() if is_class(words) else ""
 
 
 def _why(scope: Scope) -> str | None:
@@ -271,7 +340,7 @@ def _why(scope: Scope) -> str | None:
         for why, end in ((scope.below, scope.factors[0] > 1 / WIDEST), (scope.above, scope.factors[1] < WIDEST))
         if end
     ]
-    return "; ".join(reasons) or None
+    return signed_units("; ".join(reasons)) or None
 
 
 def _factor(draw: Draw, other: Draw) -> float:
@@ -290,8 +359,9 @@ def _width(draw: Draw) -> float:
 
 
 def _written(contributor: Contributor, draw: Draw) -> str:
-    """A tolerance as `--set` takes it: ±20 um, -30 um..-19 um, or the width of a zone."""
-    per, unit, law = contributor.per_unit, "" if contributor.unit == "1" else f" {contributor.unit}", draw.distribution
+    """A tolerance as `--set` takes it, with the signs of reports: ±20 µm, -30 µm..-19 µm, or the width of a zone."""
+    per, law = contributor.per_unit, draw.distribution
+    unit = "" if contributor.unit == "1" else signed_units(f" {contributor.unit}")
     if isinstance(draw, Zoned):
         return f"{draw.width / per:.6g}{unit}"
     if isinstance(law, Distribution) and law.limits is not None:

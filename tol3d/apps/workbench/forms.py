@@ -6,8 +6,9 @@ from typing import Final
 
 from tol3d.analyses.response import Response
 from tol3d.analyses.stated_changes import told
+from tol3d.apps.workbench.session import LIMITS
 from tol3d.apps.workbench.words import TEXTS, VALUES, WORDS, YES_NO, Argument
-from tol3d.report.html.blocks import Inside, Markup, tag, together
+from tol3d.report.html.blocks import Markup, tag, together
 
 ANALYSES: Final[Mapping[str, tuple[str, str]]] = {
     "effects": (
@@ -25,8 +26,10 @@ ANALYSES: Final[Mapping[str, tuple[str, str]]] = {
 """Titles and subjects by kind, in the order in which the page offers them."""
 BY_LINE: Final[Mapping[str, tuple[str, ...]]] = {"what_if": ("set",), "allocate": ("freeze", "bound", "stays")}
 """Arguments with a value for each tolerance: columns of a table."""
+BY_MEASURE: Final[Mapping[str, tuple[str, ...]]] = {"what_if": ("limits",)}
+"""Arguments with a value for each measure."""
 SIDES: Final = ("low", "high")
-PLACEHOLDERS: Final = {"set": "±33 um or x1.5", "bound": "0.8..1.2"}
+PLACEHOLDERS: Final = {"set": "±33 µm, H7 or x1.5", "bound": "0.8..1.2", "limits": "10 µm..40 µm"}
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ class FormScene:
     Args:
         measures: their names.
         lines: of its tolerances, with their words.
-        moved: tolerances that are moved on the page, as `--set` takes them.
+        moved: tolerances and limits that are moved on the page, as `--set` and `--limits` take them, by their keys.
     """
 
     measures: Sequence[str]
@@ -54,12 +57,17 @@ def line_words(response: Response, line: str) -> str:
 def form(kind: str, scene: FormScene) -> Markup:
     """Fields of an analysis."""
     _, subject = ANALYSES[kind]
-    single = {name: own for name, own in WORDS[kind].items() if name not in (*BY_LINE.get(kind, ()), "factor")}
-    fields = (_field(name, argument, scene.measures) for name, argument in single.items())
-    by_line = {name: WORDS[kind][name] for name in BY_LINE.get(kind, ())}
-    table = _table(by_line, scene, needed=kind == "what_if") if by_line else None
-    first, last = (table, None) if kind == "what_if" else (None, table)
-    return together(tag("p", subject), first, *fields, last)
+    tabled = (*BY_LINE.get(kind, ()), *BY_MEASURE.get(kind, ()), "factor")
+    fields = [_field(name, own, scene.measures) for name, own in WORDS[kind].items() if name not in tabled]
+    by_line, by_measure = ({name: WORDS[kind][name] for name in names.get(kind, ())} for names in (BY_LINE, BY_MEASURE))
+    if kind == "what_if":
+        limits = {key.removeprefix(LIMITS): own for key, own in scene.moved.items() if key.startswith(LIMITS)}
+        fields.insert(0, _table("tolerance", scene.lines, by_line, scene.moved))
+        fields.insert(1, _table("measure", dict.fromkeys(scene.measures, ""), by_measure, limits))
+    elif by_line:
+        table = _table("tolerance", scene.lines, by_line, {})
+        fields.append(tag("details", tag("summary", "single tolerances"), table))
+    return together(tag("p", subject), *fields)
 
 
 def _field(name: str, argument: Argument, measures: Sequence[str]) -> Markup:
@@ -90,20 +98,18 @@ def _box(label: str, about: Mapping[str, object]) -> Markup:
     return tag("label", tag("input", type="checkbox", **about), f" {label}")
 
 
-def _table(arguments: Mapping[str, Argument], scene: FormScene, *, needed: bool) -> Markup:
-    """A row for each tolerance, a column for each argument."""
+def _table(of: str, rows: Mapping[str, str], arguments: Mapping[str, Argument], moved: Mapping[str, str]) -> Markup:
+    """A column for each argument, and a row for each tolerance or measure, with what is moved of it."""
     heads = (tag("th", own.label, scope="col") for own in arguments.values())
-    head = tag("tr", tag("th", "tolerance", scope="col"), *heads)
-    rows = (_row(line, words, arguments, scene.moved) for line, words in scene.lines.items())
-    table = tag("div", tag("table", tag("thead", head), tag("tbody", *rows)), class_="wide")
-    if needed:
-        return table
-    return tag("details", tag("summary", "single tolerances"), table)
+    head = tag("tr", tag("th", of, scope="col"), *heads)
+    body = (_row(name, words, arguments, moved) for name, words in rows.items())
+    return tag("div", tag("table", tag("thead", head), tag("tbody", *body)), class_="wide")
 
 
 def _row(line: str, words: str, arguments: Mapping[str, Argument], moved: Mapping[str, str]) -> Markup:
     cells = (tag("td", _cell(name, own, line, moved)) for name, own in arguments.items())
-    head = tag("th", line, tag("br"), tag("span", words, class_="dim"), scope="row")
+    about = [tag("br"), tag("span", words, class_="dim")] if words else []
+    head = tag("th", line, *about, scope="row")
     return tag("tr", head, *cells)
 
 
@@ -115,5 +121,4 @@ def _cell(name: str, argument: Argument, line: str, moved: Mapping[str, str]) ->
     if name == "stays":
         return tag("select", tag("option", "middle", value=""), *(tag("option", own) for own in SIDES), **about)
     assert argument.word is VALUES
-    value: Inside = moved.get(line) if name == "set" else None
-    return tag("input", type="text", value=value, placeholder=PLACEHOLDERS[name], **about)
+    return tag("input", type="text", value=moved.get(line), placeholder=PLACEHOLDERS[name], **about)

@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from tol3d.analyses.kept_changes import scene_with
 from tol3d.apps.workbench.builds import build_view
-from tol3d.apps.workbench.card import answer, histogram, sliders, written_words
+from tol3d.apps.workbench.card import answer, histogram, limit_fields, result, sliders, written_words
 from tol3d.apps.workbench.forms import ANALYSES, FormScene, form, line_words
 from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.session import AT_ONCE, FEW, Session
@@ -95,7 +95,11 @@ class Questions:
         except InputError as error:
             return found | {"problems": _problems(error)}
         measures = [{"name": own.name, "unit": own.unit} for own in session.response.measures]
+        now, dropped = session.still(notes.now)
+        beside = [still for own in notes.beside if (still := session.still(own)[0]) or not own]
+        found["notes"] |= {"now": now, "beside": beside}
         return found | {
+            "dropped": [*dropped],
             "title": session.scene.scene,
             "description": session.scene.description,
             "measures": measures,
@@ -115,8 +119,11 @@ class Questions:
         if now:
             tried.go_on(AT_ONCE, min(FEW, tried.count))
         first = base if base.done < base.count and not now else tried
+        tried = tried.within(session.limits(now))
         return {
             "answer": answer(base, tried),
+            "result": result(tried),
+            "limits": limit_fields(base, tried),
             "chart": histogram(base, tried, None),
             "written": written_words(session, now),
             "done": first.done,
@@ -129,7 +136,8 @@ class Questions:
         session, measure, now = self._asked(asked)
         base = session.evaluated(measure, {})
         base.go_on(0.0, FEW)
-        chart = histogram(base, None, session.estimate(measure, now) if now else None)
+        moved = session.estimate(measure, now) if session.changes(now) else None
+        chart = histogram(base.within(session.limits(now)), None, moved)
         return {"chart": chart, "written": written_words(session, now)}
 
     def sliders(self, asked: Told) -> Told:
@@ -156,7 +164,7 @@ class Questions:
         rows = dict[str, tuple[Array, Mapping[str, Array] | None]]()
         if "mean" in asked.get("builds", ()):
             rows["mean"] = (session.changed(now).mean, None)
-        evaluated = session.evaluated(measure, now)
+        evaluated = session.evaluated(measure, now).within(session.limits(now))
         if "worst" in asked.get("builds", ()) and evaluated.done:
             rows["worst"] = evaluated.trial(evaluated.worst)
         if (trial := asked.get("trial")) is not None:
@@ -210,7 +218,7 @@ class Questions:
     def keep(self, asked: Told) -> Told:
         """Keep moved tolerances in the scene's text: the difference first, then the file."""
         session, _, now = self._asked(asked)
-        text = scene_with(session.response, session.scene, session.changes(now)).text
+        text = scene_with(session.response, session.scene, session.changes(now), session.limits(now)).text
         before = session.content.decode("utf-8")
         if not asked.get("write"):
             return {"diff": _difference(before, text, session.path.name), "digest": session.digest}

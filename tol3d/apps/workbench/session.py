@@ -5,10 +5,12 @@ second. So nothing has to be stopped when a tolerance moves again: the next requ
 """
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field
+from functools import cached_property, partial
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,22 +18,28 @@ from numpy.typing import NDArray
 from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.moved_values import MovedValues
 from tol3d.analyses.response import Response, Values, response_of
-from tol3d.analyses.results import results_of
+from tol3d.analyses.results import pilots_of, results_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
+from tol3d.analyses.stated_classes import classes_of, sizes_of
+from tol3d.analyses.stated_limits import OtherLimits, limited, limits_of_text
 from tol3d.apps.workbench.workspace import WhatIf, digest
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.simulate import load, simulation_of
 from tol3d.study import Simulation
-from tol3d.study.runs.summary.judged import JudgedMeasure, demand_of
+from tol3d.study.runs.summary.judged import Accepted, JudgedMeasure, demand_of
 from tol3d.study.runs.summary.sample import Sample
 from tol3d.study.system import nominal_build
 from tol3d.study.system.measure import Measure
 from tol3d.study.trials.draws import KeptDraws
+from tol3d.units import Quantity
 
+Own = TypeVar("Own")
 AT_ONCE: Final = 0.35
 """Time that a request evaluates builds [s]."""
+LIMITS: Final = "limits: "
+"""Begins the key of a what-if that changes limits, with the measure's name; no line of a scene has a colon."""
 MOST_BUILDS: Final = 100_000
 """Builds of a card; a run has all that the study asks for."""
 ESTIMATED: Final = 2000
@@ -60,6 +68,8 @@ class Evaluated:
     _codes: NDArray[np.int8] = field(init=False)
     _pieces: Iterator[tuple[slice, Values]] = field(init=False)
     _sample: Sample | None = None
+    _pilots: Sequence[Array] = ()
+    _measure: Measure | None = None
 
     def __post_init__(self) -> None:
         count = len(self.kept.deviations)
@@ -85,7 +95,7 @@ class Evaluated:
             rows, values = next(self._pieces)
             self._values[rows], self._codes[rows] = values.values, values.codes
             self.pace = (time.perf_counter() - begun) / (rows.stop - rows.start)
-            self.done, self._sample = rows.stop, None
+            self.done, self._sample, self._pilots = rows.stop, None, ()
 
     @property
     def left(self) -> float:
@@ -98,20 +108,46 @@ class Evaluated:
         if self._sample is None:
             rows = slice(0, self.done)
             positions = {name: own[rows] for name, own in self.kept.positions.items()}
-            found = results_of(self.response, self.kept.deviations[rows], positions, self.values)
+            trials = (self.response, self.kept.deviations[rows], positions, self.values)
+            self._pilots = self._pilots or pilots_of(*trials)
+            found = results_of(*trials, measures=[self.measure], pilots=self._pilots)
             self._sample = found[self.measure.name]
         return self._sample
 
     @property
     def measure(self) -> Measure:
         """The measure."""
-        return self.response.measures[0]
+        return self._measure or self.response.measures[0]
+
+    def within(self, limits: Sequence[OtherLimits]) -> "Evaluated":
+        """The builds that are done, judged by other limits: nothing is evaluated.
+
+        Raises:
+            InputError: limits that cannot be.
+        """
+        (measure,) = limited(self.response.measures, limits)
+        if measure is self.measure:
+            return self
+        if self.done:
+            self.sample  # noqa: B018 - knows the pilots
+        other = copy(self)
+        other._measure, other._sample = measure, None
+        return other
 
     @property
     def judged(self) -> JudgedMeasure:
         """Its verdict, as a run's."""
-        limited = self.measure.lower_limit is not None or self.measure.upper_limit is not None
-        return JudgedMeasure.by(self.sample, demand_of(self.response.simulation.study.accept_ppk), limited=limited)
+        return JudgedMeasure.by(self.sample, self.demand, limited=self.limited)
+
+    @property
+    def limited(self) -> bool:
+        """True if the measure has a limit."""
+        return self.measure.lower_limit is not None or self.measure.upper_limit is not None
+
+    @property
+    def demand(self) -> Accepted:
+        """Demand of the study on the measure."""
+        return demand_of(self.response.simulation.study.accept_ppk)
 
     def trial(self, number: int) -> tuple[Array, Mapping[str, Array]]:
         """Deviations of a build (components,) [mm, rad, K], and its positions."""
@@ -185,20 +221,53 @@ class Session:
         return self._kept
 
     def changes(self, now: WhatIf) -> list[Change]:
-        """Changes that were made by hand.
+        """Changes of tolerances that were made by hand.
 
         Raises:
             InputError: no such tolerance, or no such value of it.
         """
-        return [self._change(line, words) for line, words in now.items()]
+        return [self._change(line, words) for line, words in now.items() if not line.startswith(LIMITS)]
+
+    def limits(self, now: WhatIf) -> list[OtherLimits]:
+        """Limits of measures that were changed by hand.
+
+        Raises:
+            InputError: no such measure, or no such limits of it.
+        """
+        stated = {key.removeprefix(LIMITS): words for key, words in now.items() if key.startswith(LIMITS)}
+        return [_in_a_page("--limits", limits_of_text, self.response, f"{own}={text}") for own, text in stated.items()]
 
     def _change(self, line: str, words: str) -> Change:
-        of, option = (factor_of, "--factor") if words.startswith("x") else (change_of, "--set")
-        text = f"{line}={words.removeprefix('x')}"
-        try:
-            return of(self.response, text)
-        except InputError as error:  # the page has no options
-            raise InputError(str(error).removeprefix(f"{option} {text!r}: ").removeprefix(f"{option}: ")) from None
+        if words.startswith("x"):
+            return _in_a_page("--factor", factor_of, self.response, f"{line}={words.removeprefix('x')}")
+        read = partial(change_of, sizes=self.sizes)
+        return _in_a_page("--set", read, self.response, f"{line}={words}")
+
+    @cached_property
+    def sizes(self) -> Mapping[str, Quantity]:
+        """Nominal sizes by line, at which tolerance classes are read."""
+        return sizes_of(self.scene, self.simulation.lines)
+
+    @cached_property
+    def classes(self) -> Mapping[str, str]:
+        """Tolerance classes of the scene by line."""
+        return classes_of(self.scene, self.simulation.lines)
+
+    def still(self, now: WhatIf) -> tuple[WhatIf, Sequence[str]]:
+        """Those of a what-if's changes that the scene still allows, and sentences on the others."""
+        known, dropped = dict[str, str](), list[str]()
+        for line, words in now.items():
+            name = line.removeprefix(LIMITS)
+            if name not in (self.response.names if line.startswith(LIMITS) else self.response.lines):
+                dropped.append(f"{name} is no longer in the scene: its move was dropped.")
+                continue
+            try:
+                self.changed({line: words})
+                limited(self.response.measures, self.limits({line: words}))
+                known[line] = words
+            except InputError as error:
+                dropped.append(f"{name} can no longer be {words.replace('x', '× ')}: its move was dropped ({error}).")
+        return known, dropped
 
     def changed(self, now: WhatIf) -> Response:
         """The response with other tolerances.
@@ -206,15 +275,16 @@ class Session:
         Raises:
             InputError: they cannot be.
         """
-        return changed(self.response, self.changes(now)) if now else self.response
+        changes = self.changes(now)
+        return changed(self.response, changes) if changes else self.response
 
     def evaluated(self, measure: str, now: WhatIf) -> Evaluated:
-        """Builds of a measure by some tolerances, as far as they are there.
+        """Builds of a measure by some tolerances, as far as they are there; `within` judges them by other limits.
 
         Raises:
             InputError: no such measure, or tolerances that cannot be.
         """
-        key = (measure, tuple(sorted(now.items())))
+        key = (measure, tuple(sorted((line, words) for line, words in now.items() if not line.startswith(LIMITS))))
         found = self._evaluated.pop(key, None)
         if found is None:
             response = self.changed(now)
@@ -281,3 +351,11 @@ class Session:
         """
         if not self.response.components:
             raise InputError("expected a scene with tolerances, got none: all its builds are the nominal one")
+
+
+def _in_a_page(option: str, read: Callable[[Response, str], Own], response: Response, text: str) -> Own:
+    """A change read as from a command line, which a page does not have."""
+    try:
+        return read(response, text)
+    except InputError as error:
+        raise InputError(str(error).removeprefix(f"{option} {text!r}: ").removeprefix(f"{option}: ")) from None

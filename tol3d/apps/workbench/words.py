@@ -102,6 +102,7 @@ WORDS: Final[Mapping[str, Mapping[str, Argument]]] = {
     "what_if": {
         "set": Argument(VALUES, "new value"),
         "factor": Argument(VALUES, "factor"),
+        "limits": Argument(VALUES, "other limits"),
         "measure": Argument(TEXT, "measure", "all that depend on what changes"),
         "trials": Argument(_whole(2), "trials", "the study's"),
         "draws": Argument(DRAWS, "draws for each limit", "4800"),

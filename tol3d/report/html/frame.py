@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 from tol3d.report.chart import Axis
@@ -34,6 +35,8 @@ TICK: Final = 90.0
 """Least distance of two ticks of an axis, so that their words stand apart."""
 LETTER: Final = 6.6
 """Mean width of a letter."""
+LEAST_TICKS: Final = 3
+"""Of an axis on which their words find room: one tick tells no scale."""
 WIDE: Final = Frame("wide-chart", 720.0, 64.0, 16.0, 230.0, 38)
 NARROW: Final = Frame("narrow-chart", 324.0, 54.0, 6.0, 142.0, 21)
 """Fits a page of 390 pixels with its scroll bar, without scaling."""
@@ -70,7 +73,21 @@ class Scale:
         axis = self.axis
         if not axis.ticks:
             return []
-        return decades(axis.low, axis.high) if axis.log else ticks_of(axis.low, axis.high, axis.unit, self.most)
+        if axis.log:
+            return decades(axis.low, axis.high)
+        first = ticks_of(axis.low, axis.high, axis.unit, self.most)
+        if len(first) >= LEAST_TICKS:
+            return first
+        denser = (ticks_of(axis.low, axis.high, axis.unit, most) for most in range(self.most + 1, 3 * self.most))
+        some = (own for every in denser for own in (every, every[::2]))
+        return next((own for own in some if len(own) >= LEAST_TICKS and self._stand_apart(own)), first)
+
+    def _stand_apart(self, ticks: Ticks) -> bool:
+        """True if a letter's room is between the words of each tick and of the next, side by side."""
+        return all(
+            abs(self(other) - self(value)) >= LETTER * ((len(words) + len(next_words)) / 2 + 1)
+            for (value, words), (other, next_words) in pairwise(ticks)
+        )
 
     def grid_below(self, top: float, bottom: float) -> Iterator[Markup]:
         """Upright grid lines at its ticks over a panel."""

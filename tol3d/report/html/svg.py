@@ -56,7 +56,7 @@ def figure(chart: Chart, *behind: Markup, note: str = "", **attributes: object) 
         return tag("figure", tag("p", chart.instead, class_="warning"), *behind, **attributes)
     words = [*([tag("span", note)] if note else []), *_legend(chart)]
     caption = tag("figcaption", *words) if words else None
-    return tag("figure", svg(chart, WIDE), svg(chart, NARROW), caption, _table(chart), *behind, **attributes)
+    return tag("figure", svg(chart, WIDE), svg(chart, NARROW), caption, heard(chart), *behind, **attributes)
 
 
 def illustrated(page: Page, charts: Charts) -> Markup:
@@ -98,7 +98,7 @@ def _stroke(own: Outline | Line) -> str:
     return "" if own.stroke == "solid" else f"{own.stroke} "
 
 
-def _table(chart: Chart) -> Markup | None:
+def heard(chart: Chart) -> Markup | None:
     """The words of a chart, for those who hear it."""
     if not chart.table:
         return None

@@ -246,6 +246,28 @@ def limits_written(text: str) -> tuple[Quantity, Quantity] | None:
         raise InputError(str(error)) from None
 
 
+def in_class(spec: DistributionSpec, tolerance_class: str, size: Quantity) -> DistributionSpec:
+    """Limits on a drawing as those of a class of ISO 286, by the law that they have.
+
+    Args:
+        spec: limits as a drawing writes them.
+        tolerance_class: such as H7.
+        size: nominal.
+    """
+    drawn = spec.drawn if isinstance(spec.drawn, dict) else {}
+    written = {"fit": tolerance_class, "of": drawn.get("of", str(size))}
+    written |= {"law": drawn["law"]} if "law" in drawn else {}
+    between: LimitLaw = spec.between
+    return between.between(*_limits(_stated(written))).as_drawn(written, between)
+
+
+def tolerated_size(written: Any) -> Quantity | None:
+    """The size of limits: 32 mm of {fit: H7, of: 32 mm}, 40.1 mm of 40.1 mm +0.12/0; None where none is stated."""
+    if isinstance(written, dict) and "of" in written and written.keys() & {"fit", "general"}:
+        return Quantity.parse(written["of"])
+    return nominal_size(written)
+
+
 def nominal_size(written: Any) -> Quantity | None:
     """The number in front of limits, such as 40.1 mm of 40.1 mm +0.12/0; None where there is none."""
     text = written["limits"] if isinstance(written, dict) and "limits" in written else written

@@ -45,6 +45,8 @@ export async function open(name) {
   }
   app.now = found.notes.now;
   app.beside = found.notes.beside;
+  $("dropped").textContent = found.dropped.join(" ");
+  $("dropped").hidden = !found.dropped.length;
   $("tree").innerHTML = found.tree;
   $("trials").placeholder = found.trials;
   $("turning").hidden = !found.turns;

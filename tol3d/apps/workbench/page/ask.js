@@ -24,8 +24,12 @@ export async function ask(name, told = {}) {
   }
   if (reply.ok && reply.headers.get("content-type") === "application/octet-stream") return reply.arrayBuffer();
   const found = await reply.json().catch(async () => ({ error: `${reply.status}` }));
-  if (!reply.ok) throw Object.assign(new Error(found.error ?? `${reply.status}`), { status: reply.status });
+  if (!reply.ok) throw Object.assign(new Error(signed(found.error ?? `${reply.status}`)), { status: reply.status });
   return found;
+}
+
+export function signed(words) { // as reports show units
+  return words.replace(/(?<=[\s\d])um\b/g, "µm");
 }
 
 export function trouble(error) {

@@ -1,7 +1,7 @@
 // The card: verdict and distribution of the chosen measure, and what-ifs beside each other.
-import { $, app, ask, button, trouble } from "./ask.js";
+import { $, app, ask, button, signed, trouble } from "./ask.js";
 import { show } from "./app.js";
-import { note } from "./sliders.js";
+import { note, take } from "./sliders.js";
 
 export async function refresh() {
   const wish = ++app.wish;
@@ -26,9 +26,13 @@ export async function refresh() {
     $("answer").innerHTML = found.answer;
     $("chart").innerHTML = found.chart;
     fields(found.written);
+    limits(found.limits);
     const going = found.done < found.of && !app.stopped;
     $("progress").hidden = !going;
-    if (!going) break;
+    if (!going) {
+      $("result").textContent = found.result; // heard once, when all is there
+      break;
+    }
     $("progress").querySelector("progress").value = found.done / found.of;
     $("progress").querySelector("span").textContent = `${found.done} of ${found.of} trials, ${found.left} s left`;
   }
@@ -71,11 +75,43 @@ export function forget() { // what waits to be estimated
 }
 
 function fields(written) {
-  for (const [line, words] of Object.entries(written ?? {})) {
-    const field = [...document.querySelectorAll("#sliders input[type=text]")].find((own) => own.dataset.line === line);
-    if (field && field !== document.activeElement) field.value = words;
+  for (const own of document.querySelectorAll("#sliders input[type=text]")) {
+    if (own !== document.activeElement) own.value = (written ?? {})[own.dataset.line] ?? own.dataset.scene;
   }
 }
+
+// limits ------------------------------------------------------------------------------------------
+
+const LIMITS = ["lower_limit", "upper_limit"];
+
+function limits(told) {
+  for (const name of LIMITS) {
+    const own = $(name), { now, scene, is } = told[name];
+    own.disabled = !is;
+    own.dataset.scene = scene;
+    own.classList.toggle("moved", now !== scene);
+    if (own !== document.activeElement) own.value = now;
+  }
+}
+
+$("limits").addEventListener("change", async () => {
+  const key = `limits: ${app.measure}`, now = { ...app.now };
+  const stated = LIMITS.map((name) => {
+    const text = $(name).value.trim();
+    return text === $(name).dataset.scene ? "" : text;
+  });
+  delete now[key];
+  if (stated.some(Boolean)) now[key] = stated.join("..");
+  try {
+    await ask("estimate", { now });
+  } catch (error) {
+    $("limits-wrong").textContent = error.message;
+    $("limits-wrong").hidden = false;
+    return;
+  }
+  $("limits-wrong").hidden = true;
+  await take(now);
+});
 
 // what-ifs beside each other ----------------------------------------------------------------------
 
@@ -92,7 +128,8 @@ export async function aside() {
     article.innerHTML = card.answer;
     const words = document.createElement("p");
     words.className = "dim";
-    words.textContent = Object.entries(own).map(([line, text]) => `${line} ${text.replace(/^x/, "× ")}`).join(", ");
+    words.textContent = Object.entries(own)
+      .map(([line, text]) => `${line.replace(/^limits: /, "limits of ")} ${signed(text.replace(/^x/, "× "))}`).join(", ");
     const back = button("take", () => takeBack(k)), drop = button("drop", () => dropOne(k));
     article.append(words, back, " ", drop);
     found.push(article);

@@ -3,10 +3,10 @@ import { $, app, ask, trouble } from "./ask.js";
 import { show } from "./app.js";
 import { estimate, forget, refresh } from "./card.js";
 
-const WIDEST = 4, STEPS = 100; // factor at a slider's end, and its steps
+const STEP = 1.01, PAGE = 10; // factor of a slider's step, and steps of Page Up and Down
 
 export async function slide() {
-  const [scene, measure] = [app.scene, app.measure];
+  const [scene, measure, now] = [app.scene, app.measure, app.now];
   let found;
   try {
     found = await ask("sliders");
@@ -15,10 +15,16 @@ export async function slide() {
     return;
   }
   if (scene !== app.scene || measure !== app.measure) return;
+  if (now !== app.now) return slide(); // something moved meanwhile
+  if (document.querySelector("#sliders input:active")) return void setTimeout(slide, 300); // a hand is on it
   const focus = document.activeElement?.closest?.("#sliders") ? document.activeElement : null;
-  const [line, type] = [focus?.dataset.line, focus?.type];
+  const [line, type, typed] = [focus?.dataset.line, focus?.type, focus?.value];
   $("sliders").innerHTML = found.sliders;
-  if (line) [...document.querySelectorAll("#sliders input")].find((own) => own.dataset.line === line && own.type === type)?.focus();
+  const again = line && [...document.querySelectorAll("#sliders input")].find((own) => own.dataset.line === line && own.type === type);
+  if (again) {
+    again.focus();
+    if (type === "text") again.value = typed;
+  }
   app.acting = found;
   lit();
   if (found.waits) setTimeout(() => scene === app.scene && measure === app.measure && slide(), 500);
@@ -42,10 +48,11 @@ function moved(line, words) {
 }
 
 function factorWords(step) {
-  return step === 0 ? null : `x${Number((WIDEST ** (step / STEPS)).toPrecision(4))}`;
+  return step === 0 ? null : `x${Number((STEP ** step).toPrecision(4))}`;
 }
 
 export async function take(now) {
+  $("dropped").hidden = true;
   app.past.push(app.now);
   app.now = now;
   note();
@@ -57,6 +64,13 @@ export function note() {
   ask("notes", { beside: app.beside }).catch(trouble);
 }
 
+$("sliders").addEventListener("keydown", (event) => {
+  const own = event.target, by = { PageUp: PAGE, PageDown: -PAGE }[event.key];
+  if (own.type !== "range" || !by) return;
+  event.preventDefault(); // browsers go a tenth of the range
+  own.value = Number(own.value) + by;
+  for (const name of ["input", "change"]) own.dispatchEvent(new Event(name, { bubbles: true }));
+});
 $("sliders").addEventListener("input", (event) => {
   const { type, dataset, value } = event.target;
   if (type === "range") estimate(moved(dataset.line, factorWords(Number(value))));
@@ -66,6 +80,7 @@ $("sliders").addEventListener("change", async (event) => {
   own.closest("li").querySelector(".wrong")?.remove();
   if (own.type === "range") {
     forget();
+    own.closest("li").querySelector(".class-words")?.remove(); // its width is of no class
     await take(moved(line, factorWords(Number(own.value))));
     return;
   }

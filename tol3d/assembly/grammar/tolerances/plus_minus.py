@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
+from typing_extensions import override
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
@@ -69,6 +70,13 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
     )
 
     nominal: ClassVar[str] = "size"  # the diameter or width
+
+    @override
+    def nominal_size(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Quantity | None:
+        part, _, name = self.of.partition(".")
+        feature = parts[part].features.get(name)
+        drawn: Quantity | None = getattr(feature, "diameter", None) or getattr(feature, "width", None)
+        return super().nominal_size(parts, moves) or drawn
 
     @model_validator(mode="after")
     def _refuse_limits_out_of_order(self) -> Self:

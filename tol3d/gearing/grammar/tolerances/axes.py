@@ -1,15 +1,17 @@
 """Tolerances of the relative position of a mesh's axes."""
 
 import math
-from typing import ClassVar, Literal
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
+from typing_extensions import override
 
 from tol3d.gearing.effects import AxesOffset, AxisOffset, AxisTilt
 from tol3d.gearing.grammar.moves import BevelMeshSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, MeshToleranceSpec, Nominal
 from tol3d.scene.entry import Entry
-from tol3d.units import Dimension
+from tol3d.units import Dimension, Quantity
 
 
 class CentreDistanceSpec(MeshToleranceSpec):
@@ -18,6 +20,11 @@ class CentreDistanceSpec(MeshToleranceSpec):
     displaces: ClassVar[bool] = True
 
     kind: Literal["centre_distance"]
+
+    @override
+    def nominal_size(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Quantity | None:
+        stated: Quantity | None = getattr(moves[self.of], "centre_distance", None)
+        return super().nominal_size(parts, moves) or stated
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """The driven axis lies further from the driver's."""

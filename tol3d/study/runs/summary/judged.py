@@ -1,9 +1,11 @@
 """Verdicts: whether the share of trials out of limits, or the Ppk, of a measure is within what is accepted."""
 
+import math
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from tol3d.statistics.estimates.limits import normal_share
+from tol3d.statistics.estimates.limits import Proportion, normal_share
+from tol3d.statistics.estimates.performance_bounds import CHANCE
 from tol3d.study.runs.summary.measure import MeasureSummary
 from tol3d.study.runs.summary.run import RunSummary
 from tol3d.study.runs.summary.sample import CurveSample, Sample
@@ -91,6 +93,45 @@ def _verdict(interval: tuple[float, float] | None, accepted_ppm: float) -> Verdi
     if interval is None or interval[0] <= accepted_ppm < interval[1]:
         return "too few trials"
     return "OK" if interval[1] <= accepted_ppm else "NOT OK"
+
+
+MOST_TRIALS: Final = 10**9
+"""Trials beyond which nobody goes."""
+FIRST_BOUND: Final = math.ceil(math.log(CHANCE) / math.log1p(-ACCEPTED_PPM / 2e6))
+"""Trials from which on a quantile of 0.135 % has a bound, and so a Ppk by quantiles: 2731."""
+
+
+def trials_to_judge(own: Sample | CurveSample, accepted: Accepted, *, limited: bool) -> int | None:
+    """About how many trials would give a verdict, if the share out of limits, or the Ppk, stays as it is.
+
+    Bounds of a Ppk shrink by the root of the number of trials; those of a share are taken at each number. None where a
+    billion would not do, because it lies at what is accepted.
+
+    Args:
+        own, accepted, limited: as of `JudgedMeasure.by`.
+    """
+    if isinstance(accepted, AcceptedPpk) and limited:
+        low, high = own.ppk_95 or (None, None)
+        bound = None if own.ppk is None else low if own.ppk > accepted.ppk else high
+        if own.ppk is None or bound is None:
+            return max(2 * own.trials, FIRST_BOUND)
+        away = abs(own.ppk - accepted.ppk)
+        count = own.trials * ((own.ppk - bound) / away) ** 2 if away else math.inf
+        return math.ceil(count) if count <= MOST_TRIALS else None
+    ppm = accepted.beyond_one_ppm if isinstance(accepted, AcceptedPpk) else accepted
+    share = (own.out_ppm or 0.0) * 1e-6
+    few, many = own.trials, MOST_TRIALS
+    if not _decides(share, many, ppm):
+        return None
+    while many > 1.01 * few + 1:
+        middle = math.isqrt(few * many)
+        few, many = (few, middle) if _decides(share, middle, ppm) else (middle, many)
+    return many
+
+
+def _decides(share: float, trials: int, accepted_ppm: float) -> bool:
+    interval = Proportion(round(share * trials), trials).interval_ppm()
+    return _verdict(interval, accepted_ppm) != "too few trials"
 
 
 def all_ok(run: RunSummary, accepted: Accepted | None = None) -> bool:
