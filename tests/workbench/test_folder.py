@@ -24,9 +24,10 @@ from tol3d.apps.workbench.answer import keep_answer
 from tol3d.apps.workbench.attempt import JOBS, Attempt, Progress, Said
 from tol3d.apps.workbench.folder_questions import FolderQuestions
 from tol3d.apps.workbench.forms import ANALYSES
-from tol3d.apps.workbench.jobs import Analysis, Job
+from tol3d.apps.workbench.jobs import Analysis
 from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.questions import Questions
+from tol3d.apps.workbench.standing import Job
 from tol3d.apps.workbench.words import WORDS, UnfitError, words_of
 from tol3d.apps.workbench.workspace import Workspace, is_bundled
 from tol3d.report import page_html

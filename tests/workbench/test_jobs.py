@@ -22,8 +22,9 @@ from tol3d.apps.workbench import job as job_module
 from tol3d.apps.workbench import jobs as jobs_module
 from tol3d.apps.workbench.answer import NAMES, keep_answer, kept_answer
 from tol3d.apps.workbench.attempt import ANSWER, JOBS, Attempt, Order, Progress
-from tol3d.apps.workbench.jobs import Analysis, Job, Jobs
+from tol3d.apps.workbench.jobs import Analysis, Jobs
 from tol3d.apps.workbench.place import APP, FolderLock
+from tol3d.apps.workbench.standing import Job
 from tol3d.apps.workbench.words import WORDS
 from tol3d.errors import MechanismError
 from tol3d.report import page_html

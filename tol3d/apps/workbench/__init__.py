@@ -4,7 +4,7 @@
     session      text -> scene -> response, draws  session.py      Session
     live         estimate at once, then solid      live.py         Live
     place        .tol3d/app/, one app writes       place.py        FolderLock
-    jobs         runs and analyses in children     jobs.py         Jobs            (job.py: a child, work.py)
+    jobs         runs and analyses in children     jobs.py         Jobs            (standing.py; a child: job.py)
     analyses     forms -> arguments of jobs        forms.py        form            (words.py: which arguments)
     answers      kept, shown again                 answer.py       kept_answer
     runs         listed, deleted                   made_runs.py    runs_of

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from tol3d.apps.workbench.attempt import RUNS
-from tol3d.apps.workbench.jobs import Job, Jobs
+from tol3d.apps.workbench.jobs import Jobs
 from tol3d.apps.workbench.place import FolderLock
+from tol3d.apps.workbench.standing import Job
 from tol3d.apps.workbench.words import UnfitError, words_of
 from tol3d.apps.workbench.workspace import Told, Workspace, digest
 from tol3d.errors import InputError

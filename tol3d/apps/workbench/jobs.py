@@ -15,7 +15,7 @@ import threading
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Final, Literal, get_args
@@ -37,6 +37,7 @@ from tol3d.apps.workbench.attempt import (
 from tol3d.apps.workbench.job import TRUSTED
 from tol3d.apps.workbench.monitor import PATIENCE_S
 from tol3d.apps.workbench.place import FolderLock, inside
+from tol3d.apps.workbench.standing import Job, LastAttempt
 from tol3d.apps.workbench.words import refuse_unfit
 from tol3d.errors import InputError, unwritable
 from tol3d.files import read_file
@@ -48,80 +49,7 @@ LOOK_S: Final = 0.02  # s
 MOST_ENDED: Final = 50
 """Jobs that have ended and are kept; older ones are dropped as an app starts."""
 
-State = Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"]
 Analysis = Literal["what_if", "effects", "changes", "allocate", "rare"]
-
-
-@dataclass(frozen=True)
-class Job:
-    """A job as it stands.
-
-    Args:
-        id: its name.
-        scene: path of its scene in the folder.
-        kind: run, report, or an analysis.
-        asked: arguments by name.
-        state: waiting for others, running, done; cancelled by the user; interrupted, if its process is gone without an
-            end; failed.
-        done, of: trials; of that ends by itself, the most. 0 of analyses and reports.
-        words: activity.
-        started: time of its turn, or before that when it was asked for; ISO 8601.
-        run: folder that its run has once it is done; None until that is known.
-        message: for the user: why it failed, or remarks on an answer.
-    """
-
-    id: str
-    scene: str
-    kind: Kind
-    asked: Words
-    state: State
-    done: int
-    of: int
-    words: str
-    started: str
-    run: Path | None
-    message: str
-
-    @property
-    def goes_on(self) -> bool:
-        """True while it runs or waits for its turn."""
-        return self.state in ("waiting", "running")
-
-
-@dataclass(frozen=True)
-class _Last:
-    """The last attempt at a job."""
-
-    attempt: Attempt
-    order: Order
-
-    def seen(self) -> tuple[State, Progress]:
-        """State and progress, in that order: what a process that is gone has said is its last word."""
-        lives = self.attempt.is_alive()
-        progress = self.attempt.progress() or Progress()
-        if progress.is_ended:
-            return progress.state, progress
-        if self.attempt.is_cancelled:
-            return "cancelled", progress
-        return (progress.state if lives else "interrupted"), progress
-
-    def job(self) -> Job:
-        """The job as it stands."""
-        state, progress = self.seen()
-        run = progress.run or self.order.run
-        return Job(
-            id=self.order.job,
-            scene=self.order.scene,
-            kind=self.order.kind,
-            asked=self.order.words,
-            state=state,
-            done=progress.done,
-            of=progress.of,
-            words=progress.words,
-            started=progress.started or self.order.asked,
-            run=self.attempt.folder / RUNS / run if run else None,
-            message=progress.message,
-        )
 
 
 class Jobs:
@@ -311,16 +239,16 @@ class Jobs:
         """File of the numbers of an analysis, a CSV; see `answer`."""
         return inside(self.answer(id).with_name(NUMBERS), self._folder)
 
-    def _last(self) -> dict[str, _Last]:
+    def _last(self) -> dict[str, LastAttempt]:
         """Last attempts by job."""
-        return {order.job: _Last(attempt, order) for attempt, order in self._attempts()}
+        return {order.job: LastAttempt(attempt, order) for attempt, order in self._attempts()}
 
     def _attempts(self) -> Iterator[tuple[Attempt, Order]]:
         """All attempts, with their orders."""
         found = ((attempt, attempt.order()) for attempt in attempts(self._folder))
         return ((attempt, order) for attempt, order in found if order is not None)
 
-    def _of(self, id: str) -> _Last:
+    def _of(self, id: str) -> LastAttempt:
         last = self._last()
         if id not in last:
             raise InputError(f"job {id!r}: there is none; there are: {', '.join(last) or 'none'}")
@@ -355,7 +283,7 @@ class Jobs:
             if attempt.progress() is None and process.poll() is not None:
                 words = f"its process ended with {process.returncode} as it started: see {attempt.place / 'output.txt'}"
                 attempt.write(Progress("failed", message=words))
-            return _Last(attempt, order).job()
+            return LastAttempt(attempt, order).job()
 
     def _next(self) -> Attempt:
         """A new attempt, with a folder of its own."""
