@@ -4,22 +4,23 @@ import asyncio
 import json
 import shutil
 import signal
-import subprocess
-import sys
 import urllib.error
 import urllib.request
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
+from app_folders import EVIL, HOSTILE, ORDER, left_attempt, posted, started
 from places import SPUR_PAIR
 
 from tol3d import InputError
 from tol3d.apps.workbench import server as server_module
+from tol3d.apps.workbench.attempt import ANSWER, NUMBERS, Progress
 from tol3d.apps.workbench.guard import LARGEST_BODY, Guard
 from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.server import ASKED, FILES, Server, application
@@ -37,7 +38,6 @@ OURS = {
 """Headers of the page's own question."""
 OPENED = {"host": HOST, "sec-fetch-site": "none", "sec-fetch-dest": "document"}
 """Headers of an address that the user opened."""
-EVIL = "<img src=x onerror=alert(1)>"
 
 
 @dataclass(frozen=True)
@@ -227,7 +227,7 @@ def test_a_question_with_other_words_than_the_page_s_has_words_for_an_answer(
     name: str, words: dict[str, object], app: Guard
 ) -> None:
     status, found = asked(app, name, **words)
-    assert (status == 200) == (name in ("folder", "jobs"))
+    assert (status == 200) == (name in ("folder", "jobs") or (name == "changed" and "scene" in words))
     assert status in (200, 400, 422)
     assert isinstance(found.get("error", ""), str)
 
@@ -239,7 +239,15 @@ def test_a_question_with_other_words_than_the_page_s_has_words_for_an_answer(
         *(("notes", {"beside": beside}) for beside in (3, [3], {"a": 1})),
         *(("view", {"trial": trial}) for trial in (-1, 10**9, "x", [1])),
         *(("view", {"builds": builds}) for builds in (3, None)),
-        *((name, {"id": own}) for name in ("cancel", "resume", "report") for own in ("", "../..", "0001", 7, None)),
+        *(
+            (name, {"id": own})
+            for name in ("cancel", "resume", "report", "delete", "answer", "numbers")
+            for own in ("", "../..", "0001", 7, None)
+        ),
+        *(("report", {"run": run}) for run in ("../..", "..", "/etc", "none", "spur_pair.yaml", 7, ["x"])),
+        *((name, {"kind": kind}) for name in ("analyse", "forms") for kind in (None, "", "report", "../effects", 7)),
+        *(("analyse", {"kind": "effects", "fields": fields}) for fields in (3, ["x"], "x", [["base"]])),
+        ("start", {"fields": ["trials"]}),
         ("keep", {"now": {"centre distance": "x2"}, "write": True, "digest": None}),
         ("save", {"text": "\ud800", "digest": ""}),
         ("save", {"text": None, "digest": ["x"]}),
@@ -300,7 +308,7 @@ def test_a_report_opens_once_in_a_sandbox_and_not_late(tmp_path: Path, monkeypat
             pass
 
     with opened(tmp_path) as (server, app):
-        server._questions = Answers()  # type: ignore[assignment]
+        server.folder = Answers()  # type: ignore[assignment]
         status, found = asked(app, "report", id="0001")
         assert status == 200
         address = found["address"]
@@ -318,21 +326,35 @@ def test_a_report_opens_once_in_a_sandbox_and_not_late(tmp_path: Path, monkeypat
         assert server.tickets == {}
 
 
-@contextmanager
-def started(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str, str]]:
-    """The command in a process, its origin and its token."""
-    command = [sys.executable, "-m", "tol3d.cli", "app", "--no-browser", str(folder)]
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's `&` has it ignored
-    ) as process:  # fmt: skip
-        assert process.stdout is not None
-        _, _, address = process.stdout.readline().strip().partition(": ")
-        origin, _, token = address.partition("/#")
+def test_questions_on_the_folder_do_not_wait_until_a_scene_is_evaluated(tmp_path: Path) -> None:
+    shutil.copy(SPUR_PAIR, tmp_path)
+    evaluated = Event()
+    with opened(tmp_path) as (server, app):
+        server.thread.submit(evaluated.wait, 60.0)
         try:
-            yield process, origin, token
+            answers = [asked(app, name, **PAIR)[0] for name in ("folder", "changed", "jobs", "runs")]
+            assert not evaluated.is_set()
         finally:
-            process.kill()
+            evaluated.set()
+    assert answers == [200] * 4
+
+
+def test_numbers_of_an_answer_are_a_file_and_no_page(tmp_path: Path) -> None:
+    shutil.copy(SPUR_PAIR, tmp_path)
+    with opened(tmp_path) as (_, app):
+        attempt = left_attempt(tmp_path, replace(ORDER, kind="effects"), Progress("done"))
+        (attempt.place / ANSWER).touch()
+        (attempt.place / NUMBERS).write_text("<script>,1\n", "utf-8")
+        _, found = asked(app, "numbers", id="0001")
+        got = reply(app, "GET", found["address"], [*OPENED.items()])
+        headers = dict(got.headers)
+        assert (got.status, got.body) == (200, b"<script>,1\n")
+        assert headers["content-type"] == "text/csv; charset=utf-8"
+        assert (headers["content-disposition"], headers["x-content-type-options"]) == ("attachment", "nosniff")
+        (attempt.place / NUMBERS).unlink()
+        (attempt.place / NUMBERS).symlink_to(SPUR_PAIR)
+        status, found = asked(app, "numbers", id="0001")
+        assert (status, "leads out of" in found["error"]) == (422, True)
 
 
 @pytest.mark.slow
@@ -340,23 +362,21 @@ def test_a_server_that_is_killed_loses_no_what_if_and_ends_in_order_when_it_is_a
     shutil.copy(SPUR_PAIR, tmp_path)
     words = {"scene": SPUR_PAIR.name, "now": {"centre distance": "x2"}, "measure": "lost motion"}
 
-    def posted(origin: str, token: str, name: str) -> Any:
-        headers = {"x-tol3d-token": token, "content-type": "application/json", "origin": origin}
-        request = urllib.request.Request(f"{origin}/api/{name}", json.dumps(words).encode(), headers)
-        with urllib.request.urlopen(request, timeout=60) as answer:
-            return json.loads(answer.read())
-
     with started(tmp_path) as (process, origin, token):
-        assert posted(origin, token, "notes") == {}
+        assert posted(origin, token, "notes", words) == {}
         process.kill()
     with started(tmp_path) as (process, origin, token):
         for wrong in (("http://localhost:" + origin.rpartition(":")[2], token), (origin, "x" * 43)):
             with pytest.raises(urllib.error.HTTPError) as error:
-                posted(*wrong, "folder")
+                posted(*wrong, "folder", words)
             assert error.value.code in (401, 421)
             error.value.close()
-        assert posted(origin, token, "folder")["read_only"] == "", "the lock of a killed one is free"
-        assert posted(origin, token, "scene")["notes"] == {"now": words["now"], "beside": [], "measure": "lost motion"}
+        assert posted(origin, token, "folder", words)["read_only"] == "", "the lock of a killed one is free"
+        assert posted(origin, token, "scene", words)["notes"] == {
+            "now": words["now"],
+            "beside": [],
+            "measure": "lost motion",
+        }
         process.send_signal(signal.SIGINT)
         assert process.wait(60) == 130
         assert process.stdout is not None
@@ -438,21 +458,6 @@ def _elements(html: str) -> list[tuple[str, dict[str, str | None]]]:
     parser = _Tags()
     parser.feed(html)
     return parser.found
-
-
-HOSTILE = f"""scene: "{EVIL}"
-parts:
-  "{EVIL} part": {{kind: spur_gear, teeth: 28, module: 2.5 mm, pressure_angle: 20 deg, face_width: 20 mm, bore: 25 mm}}
-  wheel: {{kind: spur_gear, teeth: 110, module: 2.5 mm, pressure_angle: 20 deg, face_width: 20 mm, bore: 60 mm}}
-tolerances:
-  "{EVIL} tolerance":
-    {{kind: centre_distance, of: "{EVIL} move", distribution: {{kind: normal, lower: -20 um, upper: 20 um}}}}
-moves:
-  "{EVIL} move": {{kind: mesh, driver: "{EVIL} part", driven: wheel, centre_distance: 172.5 mm, working_flank: right}}
-measures:
-  "{EVIL} measure": {{kind: normal_backlash, of: "{EVIL} move", lower_limit: -90 um}}
-study: {{trials: 200, seed: 1, sampler: monte_carlo, engine: exact, witness: 0}}
-"""
 
 
 def test_names_of_a_stranger_s_scene_are_text(tmp_path: Path) -> None:

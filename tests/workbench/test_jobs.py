@@ -2,12 +2,10 @@
 
 import inspect
 import json
-import os
 import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +13,7 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
+from app_folders import HANGS, ORDER, left_attempt, until
 from places import SPUR_PAIR
 
 from tol3d import InputError, Overrides, RunError, load_scene, open_run, run_scene
@@ -23,8 +22,9 @@ from tol3d.apps.workbench import job as job_module
 from tol3d.apps.workbench import jobs as jobs_module
 from tol3d.apps.workbench.answer import NAMES, keep_answer, kept_answer
 from tol3d.apps.workbench.attempt import ANSWER, JOBS, Attempt, Order, Progress
-from tol3d.apps.workbench.jobs import Analysis, Job, Jobs
+from tol3d.apps.workbench.jobs import Analysis, Jobs
 from tol3d.apps.workbench.place import APP, FolderLock
+from tol3d.apps.workbench.standing import Job
 from tol3d.apps.workbench.words import WORDS
 from tol3d.errors import MechanismError
 from tol3d.report import page_html
@@ -33,7 +33,6 @@ from tol3d.study.results import task
 SCENE = Path("spur_pair.yaml")
 BLOCK = 2000  # trials
 TRIALS = 20 * BLOCK
-HANGS = 300.0  # s; a guard against waiting for ever, no claim
 
 # a job's process with small blocks, each made to last 0.1 s on the one core that it sees, whatever the machine; it has
 # all the time to end in order
@@ -52,13 +51,6 @@ def named(path):
 job.named = named
 job.main(*sys.argv[1:])
 """
-
-
-def until(found: Callable[[], bool]) -> None:
-    began = time.monotonic()
-    while not found():
-        assert time.monotonic() - began < HANGS
-        time.sleep(0.01)
 
 
 def opened(folder: Path) -> Path:
@@ -293,8 +285,12 @@ def test_arguments_are_those_of_the_analyses_but_files_and_programs() -> None:
         ("run", {}, "expected what_if, effects, changes, allocate, rare, got 'run'"),
         ("allocate", {"cost": "/etc/passwd"}, "allocate: expected ppm, ppk, measure, bounds, bound, freeze, stays"),
         ("effects", {"run_builders": True}, "effects: expected measure, base, seed, position, shapley, got 'run_bui"),
-        ("effects", {"base": True}, "effects: base: expected a whole number from 0 on, got True"),
-        ("changes", {"accept": float("nan")}, "changes: accept: expected a number, got nan"),
+        ("effects", {"base": True}, "effects: base: expected a whole number from 2 on, got True"),
+        (
+            "changes",
+            {"accept": float("nan")},
+            "changes: accept: expected builds of a million, from 0 to below 1000000, got nan",
+        ),
         ("what_if", {"set": {"centre distance": [1]}}, "what_if: set: expected texts or numbers by name, got"),
         ("what_if", {"quick": 1}, "what_if: quick: expected true or false, got 1"),
         ("allocate", {"freeze": "play"}, "allocate: freeze: expected a list of texts, got 'play'"),
@@ -370,17 +366,9 @@ def test_a_folder_that_cannot_be_written_is_read(tmp_path: Path) -> None:
     assert Jobs(lock).list() == ()
 
 
-ORDER = Order("0001", "allocate", "spur_pair.yaml", {}, "2026-11-29T09:00:00+00:00")
-
-
 def left(folder: Path, order: Order, progress: Progress | None = None) -> Jobs:
     """Jobs of a folder in which somebody left an attempt."""
-    attempt = Attempt(folder, 1)
-    attempt.place.mkdir(parents=True)
-    attempt.write(order)
-    if progress is not None:
-        attempt.write(progress)
-    os.utime(attempt.place, (0.0, 0.0))
+    left_attempt(folder, order, progress)
     return Jobs(FolderLock(opened(folder)))
 
 
@@ -453,13 +441,16 @@ def test_the_app_alone_says_what_a_scene_may_do(
         assert (job.state, job.message.partition(":")[0]) == ("failed", "its process ended with 1 as it started")
         jobs.resume(job.id, **allowed)
     asked: list[Mapping[str, bool]] = []
-    monkeypatch.setattr(
-        job_module, "named", lambda path: lambda attempt, order, monitor, trusted: asked.append(trusted)
-    )
+
+    def work(attempt: Attempt, order: Order, monitor: object, trusted: Mapping[str, bool]) -> str:
+        asked.append(trusted)
+        return "no remark"
+
+    monkeypatch.setattr(job_module, "named", lambda path: work)
     for command in commands:
         job_module.main(*command[len(jobs_module.COMMAND) :])
     assert asked == 2 * [{"trust_parts": False, "run_builders": False} | allowed]
-    assert jobs.job(job.id).state == "done"
+    assert (jobs.job(job.id).state, jobs.job(job.id).message) == ("done", "no remark")
 
 
 @pytest.mark.parametrize(

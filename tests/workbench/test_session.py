@@ -17,6 +17,7 @@ from tol3d.analyses.before_after import what_if
 from tol3d.analyses.stated_changes import factor_of
 from tol3d.analyses.stated_limits import limits_of_text
 from tol3d.apps.workbench import session
+from tol3d.apps.workbench.folder_questions import FolderQuestions
 from tol3d.apps.workbench.place import APP, FolderLock
 from tol3d.apps.workbench.questions import Questions, StaleError
 from tol3d.apps.workbench.session import NoEstimate, Turn
@@ -38,6 +39,11 @@ def opened(folder: Path, text: str = TEXT) -> Questions:
     """Questions of a folder with one scene."""
     (folder / SCENE).write_bytes(text.encode())
     return Questions(Workspace.of(folder), FolderLock(folder))
+
+
+def of_folder(questions: Questions) -> FolderQuestions:
+    """Questions on the folder, beside those on its scenes."""
+    return FolderQuestions(questions.workspace, questions.lock)
 
 
 @pytest.fixture(scope="module")
@@ -338,7 +344,7 @@ def test_what_others_wrote_meanwhile_is_not_lost(own: Questions) -> None:
     theirs = TEXT.replace("lower: 2 um, upper: 30 um", "lower: 2 um, upper: 40 um")
     before = sample(own).sigma
     path_of(own).write_text(theirs, "utf-8")
-    assert own.changed(asked())["digest"] != told["digest"]
+    assert of_folder(own).changed(asked())["digest"] != told["digest"]
     for call in (own.keep, own.save):
         with pytest.raises(StaleError, match=r"pair\.yaml was changed by another program since it was read here"):
             call(asked(WIDER, write=True, digest=told["digest"], text=TEXT))
@@ -348,11 +354,11 @@ def test_what_others_wrote_meanwhile_is_not_lost(own: Questions) -> None:
 
 def test_a_second_app_only_reads(own: Questions) -> None:
     other = Questions(own.workspace, FolderLock(own.workspace.folder))
-    assert "another tol3d app has it open" in other.folder({})["read_only"]
+    assert "another tol3d app has it open" in of_folder(other).folder({})["read_only"]
     told = other.keep(asked(WIDER))
-    for call in (other.keep, other.save, other.start):
+    for call in (other.keep, other.save, of_folder(other).start, of_folder(other).analyse):
         with pytest.raises(InputError, match="this one only reads"):
-            call(asked(WIDER, write=True, digest=told["digest"], text=""))
+            call(asked(WIDER, write=True, digest=told["digest"], text="", kind="effects"))
     assert other.notes(asked(WIDER)) == {}
     assert own.scene(asked())["notes"]["now"] == {}
     assert path_of(own).read_text("utf-8") == TEXT

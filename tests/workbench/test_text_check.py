@@ -4,17 +4,13 @@ import json
 from pathlib import Path
 
 import pytest
+from app_folders import BUILT
 from fixtures import Command
 from places import SCENES
 
 from tol3d.apps.workbench.text_check import checked
 
 TEXT = (SCENES / "spur_pair.yaml").read_text("utf-8")
-BUILT = """scene: built
-parts: {block: {kind: solid, builder: {kind: file, file: ours.py}, features: {A: {kind: plane, face: {name: top}}}}}
-moves: {bench: {kind: fix, part: block}}
-measures: {gap: {kind: gap, from: block.A, to: block.A, along: [0, 0, 1]}}
-"""
 
 
 def test_a_good_text_is_its_scene(tmp_path: Path) -> None:

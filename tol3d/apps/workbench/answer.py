@@ -7,10 +7,12 @@ from typing import Any, Final
 from tol3d.analyses.answers import Answer
 from tol3d.analyses.kept_pages import charts_of, page_of
 from tol3d.analyses.subject import section_of, text_of_section
-from tol3d.apps.workbench.attempt import ANSWER
+from tol3d.apps.workbench.attempt import ANSWER, NUMBERS
 from tol3d.errors import RunError
 from tol3d.files import UnreadableFileError, read_contained
 from tol3d.report.chart import Charts
+from tol3d.report.html.blocks import Markup
+from tol3d.report.html.svg import illustrated
 from tol3d.report.page import Page
 from tol3d.study.runs import write_texts
 
@@ -23,7 +25,6 @@ NAMES: Final = {
 }
 """Names of analyses, as runs keep them, by their functions."""
 
-NUMBERS: Final = "answer.csv"
 LARGEST: Final = 50_000_000  # bytes; as of a run's summary
 
 
@@ -38,6 +39,11 @@ class KeptAnswer:
 
     page: Page
     charts: Charts
+
+    @property
+    def html(self) -> Markup:
+        """Its lines and tables, and its charts below."""
+        return illustrated(self.page, self.charts)
 
 
 def keep_answer(answer: Answer[Any], place: Path) -> None:

@@ -23,13 +23,17 @@ from filelock import FileLock, Timeout
 from pydantic import AfterValidator, TypeAdapter, ValidationError
 
 from tol3d.apps.workbench.place import APP, inside, lock_in
-from tol3d.errors import InputError
+from tol3d.errors import InputError, unwritable
 from tol3d.files import UnreadableFileError, read_contained
 from tol3d.study.runs import write_whole
+from tol3d.study.runs.atomic_write import UNFINISHED
 
 JOBS: Final = f"{APP}/jobs"
 RUNS: Final = "runs"
 ANSWER: Final = "answer.json"
+NUMBERS: Final = "answer.csv"
+FILES: Final = ("order.json", "progress.json", "lock", "cancel", "output.txt", ANSWER, NUMBERS)
+"""Files of an attempt, the order first: without it there is no job."""
 NUMBER: Final = re.compile(r"[0-9]{4,}")
 LARGEST: Final = 1_000_000  # bytes of an order or a progress
 PROBE_S: Final = 0.02  # s; others hold a lock for less than this when they look whether it is held
@@ -95,7 +99,7 @@ class Progress:
         run: name of the run's folder in `runs`; "" until there is one.
         sha256: of the scene when it was read.
         started: time of its turn, ISO 8601; "" before.
-        message: for the user, if it failed.
+        message: for the user: why it failed, or remarks on an answer.
         version: of this format.
     """
 
@@ -188,6 +192,25 @@ class Attempt:
     def is_cancelled(self) -> bool:
         """True if it was asked to end."""
         return (self.place / "cancel").exists()
+
+    def delete(self) -> None:
+        """Delete its files and its folder; files of others in there stay.
+
+        Raises:
+            InputError: they cannot be deleted.
+        """
+        place = inside(self.place, self.folder)
+        try:
+            if place.is_symlink():
+                place.unlink()
+                return
+            for name in FILES:
+                for own in (place / name, place / f"{name}{UNFINISHED}"):
+                    own.unlink(missing_ok=True)
+            with suppress(OSError):  # something else is in it
+                place.rmdir()
+        except OSError as error:
+            raise unwritable(place, error, "close what holds it") from None
 
 
 def attempts(folder: Path) -> Iterator[Attempt]:

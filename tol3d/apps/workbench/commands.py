@@ -2,24 +2,34 @@
 
 import socket
 import stat
+import sys
 import tempfile
 import threading
 import time
 import webbrowser
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
 from tol3d.cli.arguments import RunBuilders, TrustParts
-from tol3d.cli.console import out_console, warn
+from tol3d.cli.console import out_console, tell, warn
 from tol3d.errors import InputError
+
+if TYPE_CHECKING:
+    from tol3d.apps.workbench.jobs import Jobs
 
 LOOK_S: Final = 60.0  # s; how often is looked whether anybody is there
 
 
 def app(
-    place: Annotated[Path, typer.Argument(metavar="[SCENE | FOLDER]", help="A scene, or a folder of scenes.")] = Path(),
+    place: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENE|FOLDER",
+            help="A scene, a folder of scenes, or the name of a bundled scene, copied here.",
+        ),
+    ] = ".",
     port: Annotated[int, typer.Option(min=0, max=65535, help="Of 127.0.0.1; 0: one that is free.")] = 0,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")] = True,
     trust_parts: TrustParts = False,
@@ -30,9 +40,9 @@ def app(
 
     from tol3d.apps.workbench.place import FolderLock
     from tol3d.apps.workbench.server import Server, application
-    from tol3d.apps.workbench.workspace import Workspace
+    from tol3d.apps.workbench.workspace import Workspace, is_bundled
 
-    workspace = Workspace.of(place)
+    workspace = Workspace.of(_copied(place) if is_bundled(place) else Path(place))
     lock = FolderLock(workspace.folder)
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as listening:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -64,9 +74,50 @@ def app(
             threading.Thread(target=watch, daemon=True).start()
             try:
                 serving.run(sockets=[listening])
+            except KeyboardInterrupt:
+                if not lock.refusal:
+                    _leave(server.folder.queue)
+                raise
             finally:
                 server.close()
                 lock.release()
+
+
+def _copied(name: str) -> Path:
+    """A bundled scene in the current folder, with the files that it names; one that is there already stays as it is."""
+    from tol3d.kinds import all_kinds
+    from tol3d.scene.collection import copy_scene
+
+    path = Path(f"{name}.yaml")
+    if path.exists():
+        tell(f"{path}: is here already, and is opened as it is")
+        return path
+    for copy in copy_scene(name, Path(), all_kinds()):
+        tell(f"{copy}: copied here")
+    return path
+
+
+def _leave(jobs: "Jobs") -> None:
+    """Say what goes on when the app ends; at a terminal it is asked for, and without an answer it goes on."""
+    working = sorted(jobs.working, key=lambda job: job.state != "running")
+    if not working:
+        return
+    first, others = working[0], len(working) - 1
+    done = f" ({first.done} of {first.of})" if first.of else ""
+    words = f"{first.kind.replace('_', '-')} of {first.scene} goes on{done}"
+    words += f", and {others} more wait{'s' if others == 1 else ''}" if others else ""
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        tell(f"{words}; the next tol3d app on this folder shows it")
+        return
+    try:
+        stays = typer.confirm(f"{words}: leave it running?", default=True)
+    except (typer.Abort, KeyboardInterrupt):
+        stays = True
+    if stays:
+        return
+    for job in reversed(working):  # none begins when the one before it ends
+        jobs.cancel(job.id)
+    tell("cancelled; what is finished is kept, and the next tol3d app on this folder can resume it")
 
 
 def _opener(folder: Path, address: str) -> Path:

@@ -57,8 +57,7 @@ def _ended(attempt: Attempt, order: Order, monitor: Monitor, options: tuple[str,
         attempt.wait_for_earlier()
         now = datetime.now().astimezone().isoformat(timespec="seconds")
         monitor.now = replace(monitor.now, state="running", started=now, words="starting")
-        named(WORK)(attempt, order, monitor, trusted)
-        return "done", ""
+        return "done", named(WORK)(attempt, order, monitor, trusted)
     except (InputError, MechanismError) as error:
         return "failed", str(error)
     except MemoryError:

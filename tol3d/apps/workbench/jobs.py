@@ -13,9 +13,9 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Final, Literal, get_args
@@ -23,6 +23,7 @@ from typing import Final, Literal, get_args
 from tol3d.apps.workbench.attempt import (
     ANSWER,
     JOBS,
+    NUMBERS,
     RUNS,
     STARTS_WITHIN,
     Attempt,
@@ -36,6 +37,7 @@ from tol3d.apps.workbench.attempt import (
 from tol3d.apps.workbench.job import TRUSTED
 from tol3d.apps.workbench.monitor import PATIENCE_S
 from tol3d.apps.workbench.place import FolderLock, inside
+from tol3d.apps.workbench.standing import Job, LastAttempt
 from tol3d.apps.workbench.words import refuse_unfit
 from tol3d.errors import InputError, unwritable
 from tol3d.files import read_file
@@ -44,76 +46,10 @@ from tol3d.study.runs import made_folder
 COMMAND: Final = (sys.executable, "-P", "-m", "tol3d.apps.workbench.job")  # -P: not from the folder it is called in
 REPORT: Final = "report.html"  # in a run's folder
 LOOK_S: Final = 0.02  # s
+MOST_ENDED: Final = 50
+"""Jobs that have ended and are kept; older ones are dropped as an app starts."""
 
-State = Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"]
 Analysis = Literal["what_if", "effects", "changes", "allocate", "rare"]
-
-
-@dataclass(frozen=True)
-class Job:
-    """A job as it stands.
-
-    Args:
-        id: its name.
-        scene: path of its scene in the folder.
-        kind: run, report, or an analysis.
-        asked: arguments by name.
-        state: waiting for others, running, done; cancelled by the user; interrupted, if its process is gone without an
-            end; failed.
-        done, of: trials; of that ends by itself, the most. 0 of analyses and reports.
-        words: activity.
-        started: time of its turn, or before that when it was asked for; ISO 8601.
-        run: folder that its run has once it is done; None until that is known.
-        message: for the user, if it failed.
-    """
-
-    id: str
-    scene: str
-    kind: Kind
-    asked: Words
-    state: State
-    done: int
-    of: int
-    words: str
-    started: str
-    run: Path | None
-    message: str
-
-
-@dataclass(frozen=True)
-class _Last:
-    """The last attempt at a job."""
-
-    attempt: Attempt
-    order: Order
-
-    def seen(self) -> tuple[State, Progress]:
-        """State and progress, in that order: what a process that is gone has said is its last word."""
-        lives = self.attempt.is_alive()
-        progress = self.attempt.progress() or Progress()
-        if progress.is_ended:
-            return progress.state, progress
-        if self.attempt.is_cancelled:
-            return "cancelled", progress
-        return (progress.state if lives else "interrupted"), progress
-
-    def job(self) -> Job:
-        """The job as it stands."""
-        state, progress = self.seen()
-        run = progress.run or self.order.run
-        return Job(
-            id=self.order.job,
-            scene=self.order.scene,
-            kind=self.order.kind,
-            asked=self.order.words,
-            state=state,
-            done=progress.done,
-            of=progress.of,
-            words=progress.words,
-            started=progress.started or self.order.asked,
-            run=self.attempt.folder / RUNS / run if run else None,
-            message=progress.message,
-        )
 
 
 class Jobs:
@@ -132,6 +68,11 @@ class Jobs:
     def list(self) -> tuple[Job, ...]:
         """All jobs, in the order in which they were first asked for."""
         return tuple(last.job() for last in self._last().values())
+
+    @property
+    def working(self) -> tuple[Job, ...]:
+        """Jobs that run or wait for their turn, in that order."""
+        return tuple(job for job in self.list() if job.goes_on)
 
     def job(self, id: str) -> Job:
         """A job as it stands.
@@ -234,6 +175,30 @@ class Jobs:
             order = replace(last.order, asked=_now(), run=progress.run or last.order.run)
             return self._begun(order, {"trust_parts": trust_parts, "run_builders": run_builders})
 
+    def delete(self, id: str) -> None:
+        """Delete the files of a job that has ended; its run in `runs` stays.
+
+        Raises:
+            InputError: another app writes in the folder, no such job, or one whose process lives.
+        """
+        with self._starting:
+            self._lock.demand()
+            last = self._of(id)
+            if last.job().goes_on:
+                raise InputError(f"job {id}: expected one that has ended, this one is {last.job().state}")
+            if last.attempt.is_alive():
+                raise InputError(f"job {id}: its process is still ending; ask again in a few seconds")
+            for attempt, order in self._attempts():
+                if order.job == id:
+                    attempt.delete()
+
+    def drop_oldest(self) -> None:
+        """Delete the files of jobs that ended long ago; MOST_ENDED are kept."""
+        with suppress(InputError):  # of an app that only reads
+            ended = [job for job in self.list() if not job.goes_on]
+            for job in ended[: max(len(ended) - MOST_ENDED, 0)]:
+                self.delete(job.id)
+
     def report(self, id: str) -> Path | Job:
         """Report of a finished run, in its folder, or the job that makes it when it is first asked for.
 
@@ -245,8 +210,8 @@ class Jobs:
             raise InputError(f"job {id}: expected a finished run, this one is {job.kind}, {job.state}")
         return self.report_of(job.run.name)
 
-    def report_of(self, run: str) -> Path | Job:
-        """Report of a run by the name of its folder in `runs`; see `report`."""
+    def report_of(self, run: str, scene: str = "") -> Path | Job:
+        """Report of a run by the name of its folder in `runs`, and of its scene; see `report`."""
         with self._starting:
             path = inside(self._folder / RUNS / run / REPORT, self._folder)
             if not is_name(run) or not path.parent.is_dir():
@@ -255,7 +220,7 @@ class Jobs:
                 return path
             jobs = [own for own in self.list() if own.run == path.parent]
             making = [own for own in jobs if own.kind == "report" and own.state in ("waiting", "running")]
-            scene = next((own.scene for own in jobs), "")
+            scene = scene or next((own.scene for own in jobs), "")
             return making[0] if making else self._begun(Order("", "report", scene, {}, _now(), run), {})
 
     def answer(self, id: str) -> Path:
@@ -270,12 +235,20 @@ class Jobs:
             raise InputError(f"job {id}: expected a finished analysis, this one is {last.order.kind}, {last.seen()[0]}")
         return path
 
-    def _last(self) -> dict[str, _Last]:
-        """Last attempts by job."""
-        found = ((attempt, attempt.order()) for attempt in attempts(self._folder))
-        return {order.job: _Last(attempt, order) for attempt, order in found if order is not None}
+    def numbers(self, id: str) -> Path:
+        """File of the numbers of an analysis, a CSV; see `answer`."""
+        return inside(self.answer(id).with_name(NUMBERS), self._folder)
 
-    def _of(self, id: str) -> _Last:
+    def _last(self) -> dict[str, LastAttempt]:
+        """Last attempts by job."""
+        return {order.job: LastAttempt(attempt, order) for attempt, order in self._attempts()}
+
+    def _attempts(self) -> Iterator[tuple[Attempt, Order]]:
+        """All attempts, with their orders."""
+        found = ((attempt, attempt.order()) for attempt in attempts(self._folder))
+        return ((attempt, order) for attempt, order in found if order is not None)
+
+    def _of(self, id: str) -> LastAttempt:
         last = self._last()
         if id not in last:
             raise InputError(f"job {id!r}: there is none; there are: {', '.join(last) or 'none'}")
@@ -310,7 +283,7 @@ class Jobs:
             if attempt.progress() is None and process.poll() is not None:
                 words = f"its process ended with {process.returncode} as it started: see {attempt.place / 'output.txt'}"
                 attempt.write(Progress("failed", message=words))
-            return _Last(attempt, order).job()
+            return LastAttempt(attempt, order).job()
 
     def _next(self) -> Attempt:
         """A new attempt, with a folder of its own."""

@@ -1,5 +1,6 @@
 """The app's own place in a folder, `.tol3d/app/`: it stays in the folder, and one app at a time writes there."""
 
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Final, Self
@@ -7,9 +8,11 @@ from typing import Final, Self
 from filelock import FileLock, Timeout
 
 from tol3d.errors import InputError
-from tol3d.study.runs import made_folder
+from tol3d.study.runs import made_folder, write_whole
 
 APP: Final = ".tol3d/app"
+IGNORED: Final = b"*\n"
+"""Content of `.tol3d/.gitignore`, so that no repository takes in what an app keeps."""
 
 
 def inside(path: Path, folder: Path) -> Path:
@@ -69,6 +72,14 @@ class FolderLock:
             self.refusal = f"{self.folder}: nothing can be kept there, so this app only reads ({error})"
         else:
             self.refusal = ""
+            self._ignore()
+
+    def _ignore(self) -> None:
+        """Let no repository take in the app's place; what lies there already stays."""
+        path = (self.folder / APP).parent / ".gitignore"
+        if not path.exists() and not path.is_symlink():
+            with suppress(OSError):
+                write_whole(path, IGNORED)
 
     def demand(self) -> None:
         """Raise unless this app may write.

@@ -1,4 +1,4 @@
-"""Questions of the app's page and their answers: plain data, with pieces of HTML.
+"""Questions of the app's page on a scene and their answers: plain data, with pieces of HTML.
 
 They are asked one at a time, in one thread, and each takes a fraction of a second; beside them one run of the scene is
 made, from which shares of contributors come. The page names scenes by the workspace's list.
@@ -17,19 +17,18 @@ from typing import Any, Final
 from tol3d.analyses.kept_changes import scene_with
 from tol3d.apps.workbench.builds import build_view
 from tol3d.apps.workbench.card import answer, histogram, limit_fields, result, sliders, written_words
-from tol3d.apps.workbench.jobs import Job, Jobs
+from tol3d.apps.workbench.forms import ANALYSES, FormScene, form, line_words
 from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.session import AT_ONCE, FEW, NoEstimate, Session, Turn
 from tol3d.apps.workbench.text_check import checked
 from tol3d.apps.workbench.tree import parts_of, tree
-from tol3d.apps.workbench.workspace import MOST_KEPT, Notes, Workspace, digest, written
+from tol3d.apps.workbench.workspace import MOST_KEPT, Notes, Told, Workspace, digest, written
 from tol3d.errors import InputError, Tol3dError
 from tol3d.numerics.arrays import Array
 from tol3d.report.html.blocks import tag
 from tol3d.simulate import Overrides, run_scene
 from tol3d.study.runs.run import Run
 
-Told = Mapping[str, Any]
 MOST_OPEN: Final = 3
 """Scenes in memory."""
 SHARED: Final = 20_000
@@ -59,11 +58,7 @@ class Questions:
     runs: dict[str, "Future[Run]"] = field(default_factory=dict)
     beside: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "shares"))
     looks: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "looks"))
-    _jobs: Jobs = field(init=False)
     scratch: TemporaryDirectory[str] = field(default_factory=partial(TemporaryDirectory, prefix="tol3d-app-"))
-
-    def __post_init__(self) -> None:
-        self._jobs = Jobs(self.lock)
 
     @property
     def read_only(self) -> bool:
@@ -113,6 +108,7 @@ class Questions:
             "tree": tree(session.scene),
             "warnings": [*session.simulation.warnings],
             "turns": bool(session.simulation.system.streams),
+            "trials": session.simulation.study.trials,
             "compiled": session.simulation.system.is_compiled(session.simulation.study.engine),
         }
 
@@ -205,35 +201,16 @@ class Questions:
 
         return built
 
-    # jobs -----------------------------------------------------------------------------------------
-
-    def jobs(self, asked: Told) -> Told:
-        """Jobs of the folder as they stand, the newest first."""
-        del asked
-        return {"jobs": [_job(own) for own in reversed(self._jobs.list())]}
-
-    @property
-    def is_working(self) -> bool:
-        """True while a job runs or waits for its turn."""
-        return any(own.state in ("running", "waiting") for own in self._jobs.list())
-
-    def start(self, asked: Told) -> Told:
-        """Run a scene with all its trials, as `tol3d run` does."""
-        path = self.workspace.scene(str(asked["scene"]))
-        return _job(self._jobs.start(path, trust_parts=self.trust_parts, run_builders=self.run_builders))
-
-    def cancel(self, asked: Told) -> Told:
-        """End a job in order: what it has made is kept."""
-        return _job(self._jobs.cancel(str(asked["id"])))
-
-    def resume(self, asked: Told) -> Told:
-        """Let a job go on from where it stopped."""
-        return _job(self._jobs.resume(str(asked["id"]), trust_parts=self.trust_parts, run_builders=self.run_builders))
-
-    def report(self, asked: Told) -> Path | Told:
-        """File of a finished run's report; the job that makes it, while it does."""
-        found = self._jobs.report(str(asked["id"]))
-        return found if isinstance(found, Path) else _job(found)
+    def forms(self, asked: Told) -> Told:
+        """Fields of an analysis of a scene; moved tolerances are those of what-if."""
+        session, _, now = self._asked(asked)
+        lines = {line: line_words(session.response, line) for line in session.response.lines}
+        measures = [own.name for own in session.response.measures]
+        kind = str(asked["kind"])
+        if kind not in ANALYSES:
+            raise InputError(f"expected {', '.join(ANALYSES)}, got {kind!r}")
+        fields = form(kind, FormScene(measures, lines, written_words(session, now)))
+        return {"form": fields, "kinds": {key: title for key, (title, _) in ANALYSES.items()}}
 
     def notes(self, asked: Told) -> Told:
         """Keep what is moved beside the scene, so that it is there after a reload."""
@@ -269,20 +246,6 @@ class Questions:
         path = self.workspace.scene(str(asked["scene"]))
         self._write(path, str(asked["text"]), str(asked["digest"]))
         return {"digest": digest(path.read_bytes())}
-
-    def changed(self, asked: Told) -> Told:
-        """Name of the file's content, by which the page sees that others have changed it."""
-        return {"digest": digest(self.workspace.scene(str(asked["scene"])).read_bytes())}
-
-    def folder(self, asked: Told) -> Told:
-        """The scenes of the folder."""
-        del asked
-        return {
-            "folder": self.workspace.folder.name,
-            "scenes": [*self.workspace.scenes],
-            "first": self.workspace.first,
-            "read_only": self.lock.refusal,
-        }
 
     def _write(self, path: Path, text: str, known: str) -> None:
         if self.read_only:
@@ -340,13 +303,6 @@ def _changes(told: Any) -> dict[str, str]:
 
 def _problems(error: InputError) -> list[dict[str, Any]]:
     return [own.data() for own in error.problems]
-
-
-def _job(job: Job) -> dict[str, Any]:
-    told = {
-        key: getattr(job, key) for key in ("id", "scene", "kind", "state", "done", "of", "words", "started", "message")
-    }
-    return told | {"run": job.run.name if job.run else ""}
 
 
 def _difference(before: str, after: str, name: str) -> str:

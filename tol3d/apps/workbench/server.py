@@ -1,4 +1,4 @@
-"""Requests of the app's page: static files, and questions as JSON. What answers them is loaded at the first."""
+"""Requests of the app's page: static files, and questions as JSON. Those on scenes load what answers them."""
 
 import asyncio
 import json
@@ -17,6 +17,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
+from tol3d.apps.workbench.folder_questions import FolderQuestions
 from tol3d.apps.workbench.guard import LARGEST_BODY, Guard, TooLargeError
 from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.workspace import Workspace
@@ -26,21 +27,26 @@ if TYPE_CHECKING:
     from tol3d.apps.workbench.questions import Questions
 
 QUESTIONS: Final = "tol3d.apps.workbench.questions"  # loads analyses and scipy: seconds
-ASKED: Final = (
-    *("folder", "scene", "card", "estimate", "sliders", "notes", "check", "keep", "save", "changed", "view"),
-    *("jobs", "start", "cancel", "resume", "report"),
+OF_SCENES: Final = ("scene", "card", "estimate", "sliders", "notes", "check", "keep", "save", "view", "forms")
+OF_FOLDER: Final = (
+    *("folder", "changed", "jobs", "start", "analyse", "cancel", "resume", "delete"),
+    *("runs", "report", "answer", "numbers"),
 )
+ASKED: Final = (*OF_SCENES, *OF_FOLDER)
+"""Questions; those of the folder do not wait until a scene is evaluated."""
 TICKET_S: Final = 60.0
-"""Time for which the address of a report holds [s]; each opens once."""
+"""Time for which the address of a report or of numbers holds [s]; each opens once."""
 LEFT_AFTER_S: Final = 3600.0
 """Time without a request after which the app ends; open pages ask once a minute, hidden ones too [s]."""
 SANDBOX: Final = "sandbox allow-scripts"
 """Policy of a report, which may be of a stranger's run: it cannot ask this server for anything."""
-TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
+TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".html": "text/html", ".csv": "text/csv"}
 PAGE: Final = "tol3d.apps.workbench.page"
 REPORT: Final = "tol3d.report.html"
-SCRIPTS: Final = ("app.js", "ask.js", "card.js", "editor.js", "jobs.js", "sliders.js", "stage.js", "text.js")
-FILES: Final = {**dict.fromkeys((*SCRIPTS, "app.css"), PAGE), "style.css": REPORT, "viewer.js": REPORT}
+SCRIPTS: Final = (
+    *("analyses.js", "app.js", "ask.js", "card.js", "editor.js", "jobs.js", "sliders.js", "stage.js", "text.js"),
+)
+FILES: Final = {**dict.fromkeys((*SCRIPTS, "app.css", "jobs.css"), PAGE), "style.css": REPORT, "viewer.js": REPORT}
 STALE: Final = 409
 
 
@@ -61,8 +67,13 @@ class Server:
     tickets: dict[str, tuple[float, Path]] = field(default_factory=dict)
     thread: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "live"))
     solids: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "solids"))
+    beside: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "folder"))
     asked_at: float = field(default_factory=time.monotonic)
+    folder: FolderQuestions = field(init=False)
     _questions: "Questions | None" = None
+
+    def __post_init__(self) -> None:
+        self.folder = FolderQuestions(self.workspace, self.lock, self.trust_parts, self.run_builders)
 
     @property
     def questions(self) -> "Questions":
@@ -75,7 +86,10 @@ class Server:
     async def asked(self, name: str, words: Mapping[str, Any]) -> Response:
         """An answer: data as JSON, bytes as they are, a file as an address at which it opens once."""
         loop, self.asked_at = asyncio.get_running_loop(), time.monotonic()
-        answer: Any = await loop.run_in_executor(self.thread, lambda: getattr(self.questions, name)(words))
+        if name in OF_FOLDER:
+            answer: Any = await loop.run_in_executor(self.beside, getattr(self.folder, name), words)
+        else:
+            answer = await loop.run_in_executor(self.thread, lambda: getattr(self.questions, name)(words))
         if callable(answer):
             answer = await loop.run_in_executor(self.solids, answer)
         if isinstance(answer, bytes):
@@ -91,18 +105,19 @@ class Server:
         until, path = self.tickets.pop(request.path_params["ticket"], (0.0, Path()))
         if time.monotonic() > until:
             return PlainTextResponse("expected an address that the app has just made: ask for the report again", 404)
-        return HTMLResponse(path.read_bytes(), headers={"content-security-policy": SANDBOX})
+        headers = {"content-security-policy": SANDBOX}
+        if path.suffix != ".html":
+            headers["content-disposition"] = "attachment"
+        return Response(path.read_bytes(), media_type=TYPES[path.suffix], headers=headers)
 
     @property
     def is_left(self) -> bool:
         """True if no page has asked for an hour, and no job is going on."""
-        if time.monotonic() - self.asked_at < LEFT_AFTER_S:
-            return False
-        return self._questions is None or not self._questions.is_working
+        return time.monotonic() - self.asked_at >= LEFT_AFTER_S and not self.folder.queue.working
 
     def close(self) -> None:
         """Let threads end, and remove what was made for the time that it was open."""
-        for own in (self.solids, self.thread):
+        for own in (self.solids, self.beside, self.thread):
             own.shutdown(wait=True, cancel_futures=True)
         if self._questions is not None:
             self._questions.close()

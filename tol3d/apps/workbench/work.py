@@ -18,7 +18,7 @@ KEEP_ANSWER: Final = "tol3d.apps.workbench.answer:keep_answer"
 KEEP_REPORT: Final = "tol3d.notebook:keep_report"
 
 
-def work(attempt: Attempt, order: Order, monitor: Monitor, trusted: Mapping[str, bool]) -> None:
+def work(attempt: Attempt, order: Order, monitor: Monitor, trusted: Mapping[str, bool]) -> str:
     """Do what is asked.
 
     Args:
@@ -26,6 +26,9 @@ def work(attempt: Attempt, order: Order, monitor: Monitor, trusted: Mapping[str,
         order: its own.
         monitor: of it.
         trusted: allowed to the scene, by the arguments of `run_scene`.
+
+    Returns:
+        Remarks for the user, "" for none.
 
     Raises:
         InputError, MechanismError: with the place and the remedy.
@@ -44,6 +47,8 @@ def work(attempt: Attempt, order: Order, monitor: Monitor, trusted: Mapping[str,
         scene = inside(attempt.folder / order.scene, attempt.folder)
         answer = named(f"{ANALYSES}:{order.kind}")(scene, **order.words, activity=tell, **trusted)
         named(KEEP_ANSWER)(answer, attempt.place)
+        return "; ".join(answer.warnings)
+    return ""
 
 
 def _run(

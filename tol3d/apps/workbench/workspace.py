@@ -13,6 +13,8 @@ from typing import Any, Final
 
 from tol3d.apps.workbench.place import APP, inside
 from tol3d.errors import InputError, unwritable
+from tol3d.scene import hint
+from tol3d.scene.bundled import bundled_scenes
 from tol3d.study.runs.atomic_write import write_whole
 
 VERSION: Final = 1
@@ -20,6 +22,9 @@ SUFFIXES: Final = (".yaml", ".yml")
 LARGEST_SCENE: Final = 10_000_000  # bytes
 MOST_KEPT: Final = 3
 """What-ifs beside each other."""
+
+Told = Mapping[str, Any]
+"""Words of a question of the page, or of its answer."""
 
 WhatIf = Mapping[str, str]
 """Changes by the line of the scene that states the tolerance: "x1.5", or what `--set` takes: "±33 um"."""
@@ -63,11 +68,13 @@ class Workspace:
             found = cls(place.resolve())
             if not found.scenes:
                 raise InputError(
-                    f"{place}: expected a scene or a folder with scenes, got one without {SUFFIXES[0]} files"
+                    f"{place}: expected a scene or a folder with scenes, got one without {SUFFIXES[0]} files; "
+                    "`tol3d app spur_pair` begins with a copy of that scene, `tol3d scenes` lists them all"
                 )
             return found
         if not place.exists():
-            raise InputError(f"{place}: expected a scene or a folder of scenes, found nothing of that name")
+            known = "" if place.suffix or len(place.parts) > 1 else hint(place.name, bundled_scenes())
+            raise InputError(f"{place}: expected a scene or a folder of scenes, found nothing of that name{known}")
         if not place.is_file() or place.suffix not in SUFFIXES:
             raise InputError(f"{place}: expected a scene ({SUFFIXES[0]}) or a folder of scenes")
         return cls(place.resolve().parent, place.name)
@@ -129,6 +136,11 @@ class Workspace:
             "measure": notes.measure,
         }
         written(self.notes_folder / f"{scene}.json", json.dumps(told, ensure_ascii=False, indent=1).encode())
+
+
+def is_bundled(text: str) -> bool:
+    """True for the name of a bundled scene, where neither a file nor a folder here has it."""
+    return text in bundled_scenes() and not Path(text).exists()
 
 
 def written(path: Path, content: bytes) -> None:

@@ -19,7 +19,7 @@ from tol3d.report.column import shares_of, unexplained_words
 from tol3d.report.compare import difference_of, measures_of
 from tol3d.report.heading import WORST_FIRST, shown_measures
 from tol3d.report.html.blocks import CARDS, Inside, Markup, page_blocks, tag, together
-from tol3d.report.html.svg import figure
+from tol3d.report.html.svg import figure, illustrated
 from tol3d.report.joint import correlation_blocks
 from tol3d.report.measure_charts import chart_of
 from tol3d.report.page import Page, Table, note, warning
@@ -160,9 +160,14 @@ def _kept(
     analyses: Mapping[str, Page], charts: Mapping[str, Charts], shares: Mapping[str, Shares]
 ) -> Mapping[str, Markup]:
     """Sections of analyses, with their charts, or the matrix of contributors and measures where they have one."""
-    drawn = {title: [figure(own) for row in each.rows for own in row] for title, each in charts.items()}
-    drawn |= {title: [_matrix(own)] if len(own) >= FEWEST else [] for title, own in shares.items()}
-    return {title: together(page_blocks(page.blocks), *drawn.get(title, [])) for title, page in analyses.items()}
+    found = dict[str, Markup]()
+    for title, page in analyses.items():
+        own = shares.get(title)
+        if own is None:
+            found[title] = illustrated(page, charts.get(title, Charts(())))
+        else:
+            found[title] = together(page_blocks(page.blocks), _matrix(own) if len(own) >= FEWEST else None)
+    return found
 
 
 def _matrix(shares: Shares) -> Markup:

@@ -11,6 +11,7 @@ from tol3d.report.chart import (
     Band,
     Cells,
     Chart,
+    Charts,
     Field,
     Filled,
     Lengths,
@@ -24,8 +25,9 @@ from tol3d.report.chart import (
     Series,
 )
 from tol3d.report.heading import cut
-from tol3d.report.html.blocks import Markup, tag
+from tol3d.report.html.blocks import Markup, page_blocks, tag, together
 from tol3d.report.html.frame import LETTER, NARROW, WIDE, Frame, Scale
+from tol3d.report.page import Page
 
 HIGH: Final = 246.0
 """Height of a panel of numbers."""
@@ -55,6 +57,11 @@ def figure(chart: Chart, *behind: Markup, note: str = "", **attributes: object) 
     words = [*([tag("span", note)] if note else []), *_legend(chart)]
     caption = tag("figcaption", *words) if words else None
     return tag("figure", svg(chart, WIDE), svg(chart, NARROW), caption, heard(chart), *behind, **attributes)
+
+
+def illustrated(page: Page, charts: Charts) -> Markup:
+    """A page with its charts below it."""
+    return together(page_blocks(page.blocks), *(figure(own) for row in charts.rows for own in row))
 
 
 def svg(chart: Chart, frame: Frame) -> Markup:

@@ -1,6 +1,7 @@
 // The app's page: what it shows comes from the server; here are only focus, scroll, camera and the wish of the moment.
 import { $, app, ask, trouble } from "./ask.js";
 import { aside, refresh } from "./card.js";
+import "./analyses.js";
 import "./jobs.js";
 import { note, slide, take, undo } from "./sliders.js";
 import "./stage.js";
@@ -11,10 +12,17 @@ async function start() {
   app.readOnly = Boolean(folder.read_only);
   $("run").disabled = app.readOnly;
   if (folder.read_only) trouble(folder.read_only);
-  $("which").hidden = folder.scenes.length < 2;
-  $("scene").replaceChildren(...folder.scenes.map((name) => new Option(name, name)));
+  listed(folder);
   const asked = decodeURIComponent(location.hash.replace(/^#\/scene\//, ""));
   await open(folder.scenes.includes(asked) ? asked : folder.first || folder.scenes[0]);
+}
+
+function listed(folder) {
+  app.listed = folder.listed;
+  const names = folder.scenes, gone = app.scene && !names.includes(app.scene) ? [app.scene] : [];
+  $("which").hidden = names.length + gone.length < 2;
+  $("scene").replaceChildren(...names.map((name) => new Option(name, name)), ...gone.map((name) => new Option(`${name}, gone`, name)));
+  if (app.scene) $("scene").value = app.scene;
 }
 
 export async function open(name) {
@@ -40,6 +48,7 @@ export async function open(name) {
   $("dropped").textContent = found.dropped.join(" ");
   $("dropped").hidden = !found.dropped.length;
   $("tree").innerHTML = found.tree;
+  $("trials").placeholder = found.trials;
   $("turning").hidden = !found.turns;
   $("turn").value = 0;
   $("measure").replaceChildren(...found.measures.map((own) => new Option(own.name, own.name)));
@@ -64,13 +73,22 @@ setInterval(async () => {
   looked = Date.now();
   try {
     const found = await ask("changed");
+    if (found.listed !== app.listed) listed(await ask("folder"));
     if (found.digest === app.digest) return;
+    if (!found.digest) {
+      trouble(`${app.scene} is gone: it was moved or deleted; its text is still here to copy`);
+      return;
+    }
     if (editor.text() === app.saved) await open(app.scene);
     else trouble("the file was changed by another program: save is refused until you reload the page");
   } catch (error) {
     trouble(error);
   }
 }, 2000);
+
+window.addEventListener("beforeunload", (event) => { // jobs go on, what is moved is noted
+  if (app.scene && editor.text() !== app.saved) event.preventDefault();
+});
 
 // controls ----------------------------------------------------------------------------------------
 

@@ -1,0 +1,65 @@
+// Analyses of the scene: a form for each, started as a job.
+import { $, app, ask, trouble } from "./ask.js";
+import { watch } from "./jobs.js";
+import { editor } from "./text.js";
+
+async function fill() {
+  const found = await ask("forms", { kind: $("analysis").value || "effects" }), kept = $("analysis").value;
+  $("analysis").replaceChildren(...Object.entries(found.kinds).map(([kind, title]) => new Option(title, kind)));
+  if (kept) $("analysis").value = kept;
+  $("fields").innerHTML = found.form;
+  $("analysis-note").textContent = note($("analysis").value);
+  $("analysis-state").replaceChildren();
+}
+
+function note(kind) {
+  const count = Object.keys(app.now).length, words = ["By the scene's file."];
+  if (count && kind === "what_if") words.push("The fields begin with what is moved.");
+  else if (count) words.push(`${count} change${count > 1 ? "s" : ""} not kept: the tolerances of the file count; keep… writes changes there.`);
+  if (editor.text() !== app.saved) words.push("The text is not saved: what is in the file counts.");
+  return words.join(" ");
+}
+
+function given() {
+  const fields = Object.create(null);
+  for (const own of document.querySelectorAll("#fields [data-argument]")) {
+    const { argument, item, of } = own.dataset, text = own.value.trim();
+    if (item !== undefined) {
+      if (own.checked) (fields[argument] ??= []).push(item);
+    } else if (of !== undefined) {
+      if (text) (fields[argument] ??= Object.create(null))[of] = text;
+    } else fields[argument] = own.type === "checkbox" ? own.checked : text;
+  }
+  return fields;
+}
+
+function refuse({ argument, message }) {
+  const words = document.createElement("p");
+  Object.assign(words, { className: "wrong", role: "alert", textContent: message });
+  const field = [...document.querySelectorAll("#fields [data-field]")].find((own) => own.dataset.field === argument);
+  (field ?? $("fields")).append(words);
+  field?.querySelector("input, select")?.focus();
+}
+
+$("analyses-button").addEventListener("click", async () => {
+  try {
+    await fill();
+    $("analyses").showModal();
+  } catch (error) {
+    trouble(error);
+  }
+});
+$("analysis").addEventListener("change", () => fill().catch(trouble));
+$("close-analyses").addEventListener("click", () => $("analyses").close());
+$("analyses").addEventListener("close", () => watch(""));
+$("analysis-form").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  for (const own of document.querySelectorAll("#fields .wrong")) own.remove();
+  try {
+    const found = await ask("analyse", { kind: $("analysis").value, fields: given() });
+    if (found.refused) refuse(found.refused);
+    else await watch(found.id);
+  } catch (error) {
+    refuse(error);
+  }
+});
