@@ -236,7 +236,7 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
                     aria_label=f"{line}: how wide", title=_why(scope),
                 ),
                 tag(
-                    "input", type="text", value=_written(contributor, other), data_line=line,
+                    "input", type="text", value=written(contributor, other), data_line=line,
                     aria_label=f"{line}: tolerance",
                 ),
                 class_="move",
@@ -259,7 +259,7 @@ def written_words(session: Session, now: WhatIf) -> Mapping[str, str]:
     known = {own.name: own for own in response.contributors}
     for line in now:
         name = response.lines[line][0]
-        found[line] = _written(known[name], response.drawn_by(name))
+        found[line] = written(known[name], response.drawn_by(name))
     return found
 
 
@@ -289,7 +289,7 @@ def _width(draw: Draw) -> float:
     return float(getattr(law, "scale", law.sigma))
 
 
-def _written(contributor: Contributor, draw: Draw) -> str:
+def written(contributor: Contributor, draw: Draw) -> str:
     """A tolerance as `--set` takes it: ±20 um, -30 um..-19 um, or the width of a zone."""
     per, unit, law = contributor.per_unit, "" if contributor.unit == "1" else f" {contributor.unit}", draw.distribution
     if isinstance(draw, Zoned):
