@@ -16,8 +16,9 @@ const CREASE = 0.6; // rad; edges between faces that lean less are shown round
 const MARGIN = 1.1; // of the picture, around the model
 const LINE = 15; // pixels between words of two names
 const TRIES = [0, 1, -1, 2, -2, 3, -3]; // lines by which words move to where there is room
+const BESIDE = [2, -2, 3, -3, 4, -4]; // those of a measure's number, which leaves its line free
 const NEAR = 12; // pixels from a place within which a pointer is over it
-const MOST_LINES = 4; // of a flag; all where a pointer is over it
+const MOST_LINES = 4; // of a flag; all, and the names of tolerances, where a pointer is over its place
 const HEAD = 9; // pixels, of an arrow
 const ON = 0.02; // of the size of the model: how far off a feature a click may be
 const SVG = "http://www.w3.org/2000/svg";
@@ -293,7 +294,8 @@ class View {
     for (const { name, place, own } of flags.values()) {
       const datum = own.some((flag) => !flag.name);
       const lines = [datum ? `${name} ◣` : name, ...own.filter((flag) => flag.name).map((flag) => flag.words)];
-      found.push({ kind: "flag", lines, of: [...own.flatMap((flag) => [flag.name, ...flag.of])], place });
+      const full = [datum ? `${name}, datum` : name, ...own.filter((flag) => flag.name).map((flag) => `${flag.name}: ${flag.words}`)];
+      found.push({ kind: "flag", lines, full, of: own.flatMap((flag) => [flag.name, ...flag.of]), place });
     }
     this.#lines = (state.measured?.[this.#measure] ?? []).map(([points, error]) => (
       { points: points.map((point) => new Vector3().fromArray(point)), error }
@@ -303,7 +305,7 @@ class View {
       const element = document.createElement("span"), words = document.createElement("b");
       element.className = own.kind;
       element.append(words);
-      fill({ ...own, words }, MOST_LINES);
+      fill(words, own.lines);
       return { ...own, element, words };
     });
     this.#over = null;
@@ -318,13 +320,14 @@ class View {
     }));
   }
 
-  // The measure's name and value, at the middle of what is measured; of an error the whole of it too.
+  // The measure's name and value, at the middle of what is measured; of a component of an error the whole of it too.
   #number(state) {
     const value = state.values?.[this.#measure], [{ points, error }] = this.#lines;
     const words = [value ? `${this.#measure} ${value}` : this.#measure];
-    if (error) {
-      const whole = points.at(-1).distanceTo(points[0]) / state.factor;
-      words.push(`${length(whole)} off its nominal place${state.factor === 1 ? "" : `, drawn × ${state.factor}`}`);
+    const plain = this.told.builds[this.#shown.build].states.find((own) => own.factor === 1);
+    if (error && points.length > 2 && plain) {
+      const [start, end] = [0, -1].map((k) => new Vector3().fromArray(plain.measured[this.#measure][0][0].at(k)));
+      words.push(`${length(start.distanceTo(end))} off its nominal place`);
     }
     return { kind: "number", lines: words, of: [], place: points[0].clone().add(points[1] ?? points[0]).multiplyScalar(0.5) };
   }
@@ -460,7 +463,7 @@ class View {
       element.hidden = x < 0 || y < 0 || x > width || y > height;
       if (element.hidden) continue;
       const left = Math.max(Math.min(x + 8, width - wide - 2), 0) - x;
-      const boxes = TRIES.map((lines) => [x + left, y - LINE / 2 + lines * LINE, wide, high]).filter((box) => box[1] >= 0 && box[1] + high <= height);
+      const boxes = (own.kind === "number" ? BESIDE : TRIES).map((lines) => [x + left, y - LINE / 2 + lines * LINE, wide, high]).filter((box) => box[1] >= 0 && box[1] + high <= height);
       const box = boxes.find((one) => !taken.some((other) => covers(one, other)))
         ?? (own === this.#over ? [x + left, Math.max(y - LINE / 2, 0), wide, high] : null);
       element.classList.toggle("crowded", !box);
@@ -469,6 +472,9 @@ class View {
       taken.push(box);
       words.style.left = `${left.toFixed(1)}px`;
       words.style.top = `${(box[1] - y).toFixed(1)}px`;
+    }
+    for (const { element, x, y } of this.#labels) {
+      element.classList.toggle("covered", taken.some((box) => covers([x, y, 0, 0], box)));
     }
   }
 
@@ -481,11 +487,11 @@ class View {
       over = this.#labels.filter((own) => off(own) < NEAR).sort((one, other) => off(one) - off(other))[0] ?? null;
     }
     if (over === this.#over) return;
-    for (const [own, most] of [[this.#over, MOST_LINES], [over, Infinity]].filter(([one]) => one)) {
-      fill(own, most);
-      own.size = [own.words.offsetWidth, own.words.offsetHeight];
-    }
+    const before = this.#over;
     this.#over = over;
+    if (before) fill(before.words, before.lines);
+    if (over) fill(over.words, over.full ?? over.lines, Infinity);
+    for (const own of [before, over].filter((one) => one)) own.size = [own.words.offsetWidth, own.words.offsetHeight];
     const { clientWidth: width, clientHeight: height } = this.names;
     this.#arrange(width, height);
   }
@@ -501,9 +507,9 @@ function is(name, stated) {
 }
 
 // Lines of a label, no more than so many.
-function fill(own, most) {
-  const more = own.lines.length - most, lines = more > 0 ? [...own.lines.slice(0, most), `and ${more} more`] : own.lines;
-  own.words.replaceChildren(...lines.flatMap((line, k) => k ? [document.createElement("br"), line] : [line]));
+function fill(words, every, most = MOST_LINES) {
+  const more = every.length - most, lines = more > 0 ? [...every.slice(0, most), `and ${more} more`] : every;
+  words.replaceChildren(...lines.flatMap((line, k) => k ? [document.createElement("br"), line] : [line]));
 }
 
 // A length in words, of mm.

@@ -2,7 +2,7 @@
 import { $, app, ask, trouble } from "./ask.js";
 import { aside, refresh } from "./card.js";
 import "./jobs.js";
-import { slide, take, undo } from "./sliders.js";
+import { note, slide, take, undo } from "./sliders.js";
 import "./stage.js";
 import { editor, keep, marks, problems, save, showText } from "./text.js";
 

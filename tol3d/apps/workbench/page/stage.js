@@ -3,6 +3,7 @@ import { $, app, ask } from "./ask.js";
 import { editor } from "./text.js";
 
 const STEPS = 200; // of a slider of positions
+const MANY = 4; // sliders that are shown when they are asked for
 let view = null, flying = false, waiting = null, known = {}, chosen = null, scene = "", measure = "";
 
 // One question under way, the latest wish wins. While a slider is held, a build is asked for with one factor alone.
@@ -86,30 +87,36 @@ function worlds(names) {
 function sliders() {
   const every = app.positions ?? [], several = every.length > 1;
   $("turning").hidden = !every.length;
+  $("turning").open = every.length < MANY;
   $("turns").replaceChildren(...[...(several ? [null] : []), ...every].map((own) => {
     const label = document.createElement("label"), slider = document.createElement("input"), number = document.createElement("output");
     Object.assign(slider, { type: "range", min: 0, max: STEPS, value: 0, step: 1 });
     slider.dataset.position = own ? own.name : "";
     label.append(own ? `${own.words} ` : "all together ", slider, " ", number);
-    if (own) tell(slider, number, own);
     slider.addEventListener("input", () => turned(slider, own));
     slider.addEventListener("change", () => stage());
     return label;
   }));
+  tell();
 }
 
 function turned(slider, own) {
-  for (const other of $("turns").querySelectorAll("input")) {
-    if (!own) other.value = slider.value;
-    const about = app.positions.find((one) => one.name === other.dataset.position);
-    if (about) tell(other, other.parentElement.querySelector("output"), about);
-  }
+  if (!own) for (const other of $("turns").querySelectorAll("input")) other.value = slider.value;
+  tell();
   stage(true);
 }
 
-function tell(slider, number, own) {
-  const value = own.low + (own.high - own.low) * (slider.value / STEPS), unit = own.unit === "deg" ? "°" : ` ${own.unit}`;
-  number.value = `${value.toFixed(1)}${unit}`;
+function tell() {
+  for (const slider of $("turns").querySelectorAll("input")) {
+    const own = app.positions.find((one) => one.name === slider.dataset.position);
+    if (own) value(slider, slider.parentElement.querySelector("output"), own);
+  }
+}
+
+function value(slider, number, own) {
+  const at = own.low + (own.high - own.low) * (slider.value / STEPS), unit = own.unit === "deg" ? "°" : ` ${own.unit}`;
+  const drawn = !Object.keys(positions()).length && ["worst", "trial"].includes($("build").value);
+  number.value = drawn ? "as in the trial" : `${at.toFixed(1)}${unit}`;
   slider.setAttribute("aria-valuetext", number.value);
 }
 
@@ -159,6 +166,7 @@ $("tree").addEventListener("click", (event) => {
 
 $("build").addEventListener("change", () => {
   $("trial").hidden = $("build").value !== "trial";
+  tell();
   stage();
 });
 $("factor").addEventListener("input", () => {
