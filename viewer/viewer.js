@@ -304,6 +304,7 @@ class View {
     this.#labels = found.map((own) => {
       const element = document.createElement("span"), words = document.createElement("b");
       element.className = own.kind;
+      element.place = own.place;
       element.append(words);
       fill(words, own.lines);
       return { ...own, element, words };
