@@ -291,6 +291,60 @@ def test_words_that_a_tolerance_cannot_have_are_refused_at_their_field(app: App)
     app.solid({})
 
 
+STAGED = "!/building/.test(document.querySelector('#stage-words').textContent)"
+POSES = "JSON.stringify([...document.querySelectorAll('.names span')].map((own) => own.place.toArray()))"
+
+
+def test_a_position_is_turned_by_its_slider_and_meshes_are_not_sent_again(app: App) -> None:
+    app.load()
+    app.page.wait(STAGED)
+    before, number = app.page.ask(POSES), "document.querySelector('#turns output').value"
+    assert app.page.ask(number) == "0.0°"
+    app.page.ask("window.sent = []; window.asked = window.fetch")
+    app.page.ask(
+        "window.fetch = async (...own) => { const found = await asked(...own);"
+        " if (own[0] === '/api/view') sent.push((await found.clone().arrayBuffer()).byteLength); return found; }, 0"
+    )
+    for event in ("input", "change"):
+        app.told("#turns input", event, 25)
+        app.page.wait(f"{POSES} !== {json.dumps(before)} && sent.length > 0 && {STAGED}")
+    assert app.page.ask(number) == "45.0°"
+    assert max(app.page.ask("sent")) < 20_000, "bytes: poses, no triangles"
+    app.told("#build", "change", "trial")
+    app.page.wait(f"document.querySelector('#stage-words').textContent.startsWith('trial 0') && {STAGED}")
+    app.told("#turns input", "change", 0)
+    assert app.page.ask(number) == "45.0°"
+    app.told("#turns input", "input", 0)
+    assert app.page.ask(number) == "as in the trial"
+    assert app.page.told == []
+
+
+def test_an_entry_of_the_tree_is_lit_and_flags_and_the_measure_are_drawn(app: App) -> None:
+    app.load()
+    app.page.wait(STAGED)
+    texts = "[...document.querySelectorAll('.names .flag')].map((own) => own.textContent)"
+    flags = app.page.ask(texts)
+    assert [own for own in flags if own.startswith("pinion, wheelcentre distance ±20 µm")]
+    assert [own for own in flags if own.startswith("pinion") and "tooth thickness -30 µm..-19 µm" in own]
+    assert BACKLASH in app.page.ask("document.querySelector('.names .number').textContent")
+    assert app.page.ask("document.querySelectorAll('.measured path').length") == 2
+    app.page.ask("document.querySelector('[name=flags]').click()")
+    assert app.page.ask(texts) == []
+    plain = app.page.picture("#stage .stage")
+    app.page.ask("document.querySelector('#tree button[data-name=pinion]').click()")
+    lit = app.page.picture("#stage .stage")
+    orange = [float((own[..., 0] > own[..., 2] + 60).mean()) for own in (plain, lit)]
+    assert orange[0] > 0.05
+    assert orange[1] < 0.1 * orange[0], "the wheel is grey"
+    app.page.ask(f"document.querySelector('#tree button[data-name={json.dumps(BACKLASH)}]').click()")
+    app.page.wait(STAGED)
+    assert (
+        float((app.page.picture("#stage .stage")[..., 0] > app.page.picture("#stage .stage")[..., 2] + 60).mean())
+        > 0.05
+    )
+    assert app.page.told == []
+
+
 def test_what_another_program_writes_is_shown(app: App) -> None:
     app.load()
     app.file.write_text(TEXT.replace("scene: spur pair", "scene: another pair"), "utf-8")
