@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 import uvicorn
 from browser import Page, browser
-from places import SPUR_PAIR
+from places import SCENES, SPUR_PAIR
 
 from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.server import Server, application
@@ -23,6 +23,7 @@ pytestmark = pytest.mark.slow
 
 SCENE, CENTRE, BACKLASH = "pair.yaml", "centre distance", "normal backlash"
 TEXT = SPUR_PAIR.read_text("utf-8").replace("trials: 2000", "trials: 200")
+DOOR = (SCENES / "door.yaml").read_text("utf-8").replace("trials: 20000", "trials: 200")
 KEYS = {"ArrowRight": 39, "PageUp": 33, "z": 90, "s": 83, "?": 191, "Escape": 27}
 SLIDER = f'#sliders input[type=range][data-line="{CENTRE}"]'
 FIELD = f'#sliders input[type=text][data-line="{CENTRE}"]'
@@ -133,6 +134,7 @@ def app(tmp_path_factory: pytest.TempPathFactory) -> Iterator[App]:
     file = folder / SCENE
     file.write_text(TEXT, "utf-8")
     (folder / "other.yaml").write_text(TEXT, "utf-8")
+    (folder / "door.yaml").write_text(DOOR, "utf-8")
     with socket.create_server(("127.0.0.1", 0)) as listening, FolderLock(folder) as lock, browser() as page:
         own = Server(Workspace.of(file), lock)
         guarded = application(own, listening.getsockname()[1])
@@ -333,15 +335,39 @@ def test_an_entry_of_the_tree_is_lit_and_flags_and_the_measure_are_drawn(app: Ap
     plain = app.page.picture("#stage .stage")
     app.page.ask("document.querySelector('#tree button[data-name=pinion]').click()")
     lit = app.page.picture("#stage .stage")
-    orange = [float((own[..., 0] > own[..., 2] + 60).mean()) for own in (plain, lit)]
-    assert orange[0] > 0.05
-    assert orange[1] < 0.1 * orange[0], "the wheel is grey"
     app.page.ask(f"document.querySelector('#tree button[data-name={json.dumps(BACKLASH)}]').click()")
     app.page.wait(STAGED)
-    assert (
-        float((app.page.picture("#stage .stage")[..., 0] > app.page.picture("#stage .stage")[..., 2] + 60).mean())
-        > 0.05
+    again = app.page.picture("#stage .stage")
+    orange = [float((own[..., 0] > own[..., 2] + 60).mean()) for own in (plain, lit, again)]
+    assert orange[0] > 0.05
+    assert orange[1] < 0.1 * orange[0], "the wheel is grey"
+    assert orange[2] == pytest.approx(orange[0], abs=5e-3), "a measure has no part of its own"
+    assert app.page.told == []
+
+
+def test_a_feature_that_is_clicked_is_found_in_tree_and_text_and_a_tolerance_lights_its_own(app: App) -> None:
+    app.load()
+    app.told("#scene", "change", "door.yaml")
+    labels = "[...document.querySelectorAll('.names span:not([hidden])')]"
+    app.page.wait(f"{labels}.some((own) => own.textContent.startsWith('body.striker')) && {STAGED}")
+    app.page.ask("document.querySelector('#stage').scrollIntoView()")
+    striker = f"{labels}.find((own) => own.textContent.startsWith('body.striker'))"
+    x, y = app.page.ask(f"(({{ x, y }}) => [x, y])({striker}.getBoundingClientRect())")
+    for kind in ("mousePressed", "mouseReleased"):
+        app.page.call("Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, x=x, y=y)
+    feature, line = app.page.ask(
+        "[document.activeElement.dataset.feature, Number(document.activeElement.dataset.line)]"
     )
+    assert feature in ("body.striker", "door.striker"), "they touch"
+    assert DOOR.splitlines()[line - 1].strip().startswith("striker:")
+    assert app.page.ask("document.querySelector('.cm-activeLine').textContent").strip().startswith("striker:")
+    colours = "new Set([...document.querySelectorAll('#parts input')].map((own) => own.dataset.part)).size"
+    assert app.page.ask(colours) == 2
+    plain = app.page.picture("#stage .stage")
+    app.page.ask("document.querySelector('#tree button[data-name=\"body striker y\"]').click()")
+    lit = app.page.picture("#stage .stage")
+    blue = [float((own[..., 2] > own[..., 0] + 60).mean()) for own in (plain, lit)]
+    assert 0.0 < blue[1] < blue[0], "the striker alone is in colour"
     assert app.page.told == []
 
 
