@@ -269,7 +269,8 @@ def test_a_build_that_is_not_there_has_a_sentence_and_the_nominal_one_is_shown(o
     words = after["builds"][1]["states"][0]["words"]
     assert words.startswith(f"trial {worst} of {TRIALS}, worst")
     number, unit = after["builds"][1]["states"][0]["values"][BACKLASH].split(" ")
-    assert (float(number), unit) == (pytest.approx(values.min(), abs=1e-3), "µm")
+    assert unit == "µm"
+    assert float(number) == pytest.approx(values.min(), abs=1e-3)
     assert _picture(own, builds=["mean"])["builds"][1]["name"] == "mean"
     with pytest.raises(InputError, match=f"expected a trial from 0 to {TRIALS - 1}, got {TRIALS}"):
         own.view(asked(trial=TRIALS))
