@@ -65,7 +65,7 @@ class View {
     this.names.className = "names";
     this.lines = document.createElementNS(SVG, "svg");
     this.lines.setAttribute("class", "measured");
-    renderer.domElement.after(this.lines, this.names);
+    renderer.domElement.after(this.names, this.lines);
     this.#bind();
   }
 
@@ -432,7 +432,10 @@ class View {
       const own = place.clone().project(this.camera);
       return [((own.x + 1) / 2) * width, ((1 - own.y) / 2) * height];
     };
-    for (const line of this.#lines) this.#draw(line, line.points.map(seen));
+    for (const line of this.#lines) {
+      line.seen = line.points.map(seen);
+      this.#draw(line, line.seen);
+    }
     this.#labels.forEach((own) => { [own.x, own.y] = seen(own.place); });
     this.#arrange(width, height);
   }
@@ -458,7 +461,8 @@ class View {
   #arrange(width, height) {
     const weight = (own) => own === this.#over ? 0 : own.kind === "number" ? 1
       : own.of.some((name) => this.#first.has(name)) ? 2 : own.kind === "name" ? 3 : 4;
-    const taken = [];
+    const taken = this.#lines.flatMap((line) => line.seen.slice(0, 2).map(([x, y]) => [x - HEAD, y - HEAD, 2 * HEAD, 2 * HEAD]));
+    const ends = taken.length;
     for (const own of [...this.#labels].sort((one, other) => weight(one) - weight(other))) {
       const { element, words, x, y, size: [wide, high] } = own;
       element.hidden = x < 0 || y < 0 || x > width || y > height;
@@ -475,7 +479,7 @@ class View {
       words.style.top = `${(box[1] - y).toFixed(1)}px`;
     }
     for (const { element, x, y } of this.#labels) {
-      element.classList.toggle("covered", taken.some((box) => covers([x, y, 0, 0], box)));
+      element.classList.toggle("covered", taken.slice(ends).some((box) => covers([x, y, 0, 0], box)));
     }
   }
 
