@@ -446,7 +446,7 @@ class View {
     const measured = seen.slice(0, 2), [[x, y], [u, v]] = [seen[0], seen[1] ?? seen[0]];
     const long = Math.hypot(u - x, v - y);
     let head = "";
-    if (points.length < 2 || long < 1) head = `M${x - 5} ${y}h10M${x} ${y - 5}v10`; // a place alone
+    if (points.length < 2 || long < HEAD) head = `M${x - HEAD} ${y}h${2 * HEAD}M${x} ${y - HEAD}v${2 * HEAD}`; // a place
     else if (error) {
       const [ahead, side] = [[(u - x) / long, (v - y) / long], [(y - v) / long, (u - x) / long]];
       const back = Math.min(HEAD, long);
