@@ -15,6 +15,13 @@ import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.j
 const CREASE = 0.6; // rad; edges between faces that lean less are shown round
 const MARGIN = 1.1; // of the picture, around the model
 const LINE = 15; // pixels between words of two names
+const TRIES = [0, 1, -1, 2, -2, 3, -3]; // lines by which words move to where there is room
+const BESIDE = [2, -2, 3, -3, 4, -4]; // those of a measure's number, which leaves its line free
+const NEAR = 12; // pixels from a place within which a pointer is over it
+const MOST_LINES = 4; // of a flag; all, and the names of tolerances, where a pointer is over its place
+const HEAD = 9; // pixels, of an arrow
+const ON = 0.02; // of the size of the model: how far off a feature a click may be
+const SVG = "http://www.w3.org/2000/svg";
 const STILL = 4; // pixels that a pointer may move in a click
 const GREY = "#b4bac0";
 const FROM = new Vector3(0.9, 0.75, 1.1);
@@ -34,11 +41,18 @@ class View {
   #shown = { build: 0, state: 0 };
   #geometries = [];
   #asked = 0; // models
+  #flags = []; // of tolerances and datums
+  #first = new Set(); // names whose words are placed before those of others
+  #measure = "";
+  #labels = [];
+  #lines = []; // of the measure
+  #over = null; // the label under the pointer
+  #hides = {}; // kinds of labels
 
   constructor(figure, renderer) {
     this.figure = figure;
     this.renderer = renderer;
-    this.told = { up: [0, 1, 0], parts: [], builds: [] };
+    this.told = { up: [0, 1, 0], parts: [], builds: [], features: {} };
     this.parts = [];
     this.scene = new Scene();
     this.scene.add(new AmbientLight(0xffffff, 1.5));
@@ -49,38 +63,83 @@ class View {
     this.scene.add(this.camera);
     this.names = document.createElement("div");
     this.names.className = "names";
-    renderer.domElement.after(this.names);
+    this.lines = document.createElementNS(SVG, "svg");
+    this.lines.setAttribute("class", "measured");
+    renderer.domElement.after(this.names, this.lines);
     this.#bind();
   }
 
-  // Show another model with its builds, from where the camera is; a promise of when it is drawn.
+  // Show another model with its builds, from where the camera is; a promise of when it is drawn. Where told.first is
+  // not 0 the model has only meshes from that number on, or is null: the others stay.
   async replace(model, told) {
     this.#asked += 1;
-    const asked = this.#asked;
-    const { scene } = await new GLTFLoader().parseAsync(model, "");
+    const asked = this.#asked, kept = told.first || 0;
+    const scene = model?.byteLength ? (await new GLTFLoader().parseAsync(model, "")).scene : null;
     if (asked !== this.#asked) return; // another model was asked for since
-    const first = this.parts.length === 0;
+    const other = this.told.world !== told.world;
     const name = this.told.builds[this.#shown.build]?.name;
-    this.scene.remove(...this.parts);
-    this.#geometries.forEach((own) => own.dispose());
-    this.parts.forEach((part) => Object.values(part.userData.materials).forEach((own) => own.dispose()));
+    if (!kept) this.#geometries.splice(0).forEach((own) => own.dispose());
+    if (scene) Object.assign(this.#geometries, creased(scene));
+    if (JSON.stringify(told.parts) !== JSON.stringify(this.told.parts)) {
+      this.#clear();
+      this.parts = told.parts.map((part) => this.#part(part));
+      this.scene.add(...this.parts);
+    }
     this.told = told;
-    this.#geometries = creased(scene);
-    this.parts = told.parts.map((part) => this.#part(part));
-    this.scene.add(...this.parts);
     const known = told.builds.findIndex((own) => own.name === name);
     this.#shown = { build: Math.max(known, 0), state: known < 0 ? 0 : this.#shown.state };
-    if (first) {
-      this.figure.classList.add("live");
-      this.camera.up.fromArray(told.up);
-      this.controls = new OrbitControls(this.camera, this.renderer.domElement);
-      this.controls.addEventListener("change", () => this.draw());
-      new ResizeObserver(() => this.resize()).observe(this.renderer.domElement.parentElement);
-    }
     this.figure.querySelectorAll('[name="part"]').forEach((box) => this.#choose(box));
+    this.figure.classList.add("live");
+    this.renderer.domElement.parentElement.hidden = false;
+    if (other) this.#turned(told.up);
     this.pose();
-    if (first) this.fit();
+    if (other) this.fit();
     else this.resize();
+  }
+
+  // Show nothing, until there is another model.
+  clear() {
+    this.#asked += 1;
+    this.#clear();
+    this.told = { up: [0, 1, 0], parts: [], builds: [], features: {} };
+    this.#labels = this.#lines = [];
+    this.names.replaceChildren();
+    this.lines.replaceChildren();
+    this.figure.classList.remove("live");
+    this.renderer.domElement.parentElement.hidden = true;
+  }
+
+  // Flags of tolerances and datums: each with the names of parts and features that it is of, its own name and words.
+  flags(every) {
+    this.#flags = every;
+    this.pose();
+  }
+
+  // Draw where a measure is read, by its name; "": of none.
+  measure(name) {
+    this.#measure = name;
+    this.pose();
+  }
+
+  // Place words of these parts, features and tolerances before those of others where there is no room for all.
+  prefer(names) {
+    this.#first = new Set(names);
+    this.pose();
+  }
+
+  #clear() {
+    this.scene.remove(...this.parts);
+    this.parts.forEach((part) => Object.values(part.userData.materials).forEach((own) => own.dispose()));
+    this.parts = [];
+  }
+
+  // Another direction up: the camera turns about it.
+  #turned(up) {
+    this.camera.up.fromArray(up);
+    if (this.controls) this.controls.dispose();
+    else new ResizeObserver(() => this.resize()).observe(this.renderer.domElement.parentElement);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.draw());
   }
 
   // Show a build by its name or its place, its deviations so many times as large, or as near to that as there is.
@@ -122,10 +181,12 @@ class View {
   // Materials of a part: one, or grey and that of its features that are in colour.
   #paint(mesh) {
     const { materials, part, features } = mesh.userData;
-    const lit = this.#lit && !this.#lit.has(part) ? features.filter(([name]) => this.#lit.has(name)) : [];
+    const isLit = (name) => [...this.#lit].some((own) => is(name, own));
+    const whole = !this.#lit || isLit(part);
+    const lit = whole ? [] : features.filter(([name]) => isLit(name));
     mesh.geometry.clearGroups();
     if (!lit.length) {
-      mesh.material = this.#lit && !this.#lit.has(part) ? materials.grey : materials.own;
+      mesh.material = whole ? materials.own : materials.grey;
       return;
     }
     mesh.material = [materials.grey, materials.feature];
@@ -147,7 +208,9 @@ class View {
       build: (own) => { this.#shown.build = Number(own.value); },
       factor: (own) => { this.#shown.state = Number(own.value); },
       part: (own) => this.#choose(own),
-      names: (own) => { this.names.hidden = !own.checked; },
+      names: (own) => { this.#hides.name = !own.checked; },
+      flags: (own) => { this.#hides.flag = !own.checked; },
+      measured: (own) => { this.#measure = own.value; },
     };
     for (const kind of ["input", "change"]) {
       this.figure.addEventListener(kind, ({ target }) => {
@@ -161,6 +224,8 @@ class View {
     });
     const canvas = this.renderer.domElement;
     canvas.addEventListener("dblclick", () => this.fit());
+    canvas.addEventListener("pointermove", (event) => this.#look(event));
+    canvas.addEventListener("pointerleave", () => this.#look(null));
     let from = null;
     canvas.addEventListener("pointerdown", (event) => { from = event; });
     canvas.addEventListener("pointerup", (event) => {
@@ -180,7 +245,25 @@ class View {
     if (!hit) return [null, null];
     const { part, features } = hit.object.userData;
     const feature = features.find(([, first, count]) => hit.faceIndex >= first && hit.faceIndex < first + count);
-    return [part, feature ? feature[0] : null];
+    return [part, feature ? feature[0] : this.#nearest(hit)];
+  }
+
+  // The feature on whose face a part is hit, where it lies undeviated: of those that are as near the smallest.
+  #nearest(hit) {
+    const index = this.parts.indexOf(hit.object), here = this.#state().poses[index];
+    const nominal = new Matrix4().fromArray(this.told.builds[0].states[0].poses[index]);
+    const place = hit.point.clone().applyMatrix4(nominal.multiply(new Matrix4().fromArray(here).invert()));
+    const near = Object.entries(this.told.features ?? {}).filter(([, own]) => own.part === hit.object.userData.part).map(([name, own]) => {
+      const local = place.clone().applyMatrix4(new Matrix4().fromArray(own.frame).invert());
+      const reach = new Vector3().fromArray(own.reach);
+      return { name, off: local.distanceTo(local.clone().clamp(reach.clone().negate(), reach)), size: reach.length() };
+    }).filter((own) => own.off < ON * this.reach);
+    near.sort((one, other) => one.size - other.size);
+    return near.length ? near[0].name : null;
+  }
+
+  #state() {
+    return this.told.builds[this.#shown.build].states[this.#shown.state];
   }
 
   pose() {
@@ -196,14 +279,86 @@ class View {
       this.#paint(part);
     });
     this.#tell(states, place);
-    this.names.replaceChildren(...Object.entries(state.names).map(([name, place]) => {
-      const label = document.createElement("span");
-      label.append(document.createElement("b"));
-      label.firstChild.textContent = name;
-      label.place = new Vector3().fromArray(place);
-      return label;
-    }));
+    this.#label(state);
     this.draw();
+  }
+
+  // Names of places, flags and the measure's number, as labels; and the lines of the measure.
+  #label(state) {
+    const found = [], flags = this.#hides.flag ? new Map() : this.#placed(state);
+    const named = this.#hides.name ? [] : Object.entries(state.names);
+    for (const [name, place] of named) {
+      const feature = Object.hasOwn(state.features ?? {}, name) ? name : name.slice(0, Math.max(name.lastIndexOf(", "), 0));
+      if (!flags.has(feature)) found.push({ kind: "name", lines: [name], of: [name, feature], place: new Vector3().fromArray(place) });
+    }
+    for (const { name, place, own } of flags.values()) {
+      const datum = own.some((flag) => !flag.name);
+      const lines = [datum ? `${name} ◣` : name, ...own.filter((flag) => flag.name).map((flag) => flag.words)];
+      const full = [datum ? `${name}, datum` : name, ...own.filter((flag) => flag.name).map((flag) => `${flag.name}: ${flag.words}`)];
+      found.push({ kind: "flag", lines, full, of: own.flatMap((flag) => [flag.name, ...flag.of]), place });
+    }
+    this.#lines = (state.measured?.[this.#measure] ?? []).map(([points, error]) => (
+      { points: points.map((point) => new Vector3().fromArray(point)), error }
+    ));
+    if (this.#lines.length) found.unshift(this.#number(state));
+    this.#labels = found.map((own) => {
+      const element = document.createElement("span"), words = document.createElement("b");
+      element.className = own.kind;
+      element.place = own.place;
+      element.append(words);
+      fill(words, own.lines);
+      return { ...own, element, words };
+    });
+    this.#over = null;
+    this.names.replaceChildren(...this.#labels.map((own) => own.element));
+    for (const own of this.#labels) own.size = [own.words.offsetWidth, own.words.offsetHeight];
+    this.lines.replaceChildren(...this.#lines.flatMap((line) => {
+      line.path = document.createElementNS(SVG, "path");
+      line.path.setAttribute("class", line.error ? "error" : "");
+      line.aside = document.createElementNS(SVG, "path");
+      line.aside.setAttribute("class", "aside");
+      return [line.aside, line.path];
+    }));
+  }
+
+  // The measure's name and value, at the middle of what is measured; of a component of an error the whole of it too.
+  #number(state) {
+    const value = state.values?.[this.#measure], [{ points, error }] = this.#lines;
+    const words = [value ? `${this.#measure} ${value}` : this.#measure];
+    const plain = this.told.builds[this.#shown.build].states.find((own) => own.factor === 1);
+    if (error && points.length > 2 && plain) {
+      const [start, end] = [0, -1].map((k) => new Vector3().fromArray(plain.measured[this.#measure][0][0].at(k)));
+      words.push(`${length(start.distanceTo(end))} off its nominal place`);
+    }
+    return { kind: "number", lines: words, of: [], place: points[0].clone().add(points[1] ?? points[0]).multiplyScalar(0.5) };
+  }
+
+  // Flags by the feature or part at which they stand, with their place.
+  #placed(state) {
+    const found = new Map();
+    for (const flag of this.#flags) {
+      const places = flag.of.map((name) => this.#where(state, name)).filter((own) => own);
+      if (!places.length) continue;
+      const name = flag.of.join(", ");
+      const place = places.reduce((sum, own) => sum.add(own.place), new Vector3()).divideScalar(places.length);
+      const key = places.length === 1 ? places[0].name : name;
+      if (!found.has(key)) found.set(key, { name: key, place, own: [] });
+      found.get(key).own.push(flag);
+    }
+    return found;
+  }
+
+  // The place of a feature, the first of a pattern, or the middle of a part that is seen; null where there is none.
+  #where(state, name) {
+    const places = state.features ?? {};
+    const feature = Object.hasOwn(places, name) ? name : Object.keys(places).find((own) => is(own, name));
+    if (feature) return { name: feature, place: new Vector3().fromArray(places[feature]) };
+    const part = this.parts.find((own) => own.visible && [own.userData.part, own.userData.name].includes(name))
+      ?? this.parts.find((own) => own.visible && is(own.userData.part, name));
+    if (!part) return null;
+    part.geometry.computeBoundingBox();
+    const box = part.geometry.boundingBox;
+    return { name, place: box.getCenter(new Vector3()).applyMatrix4(part.matrix) };
   }
 
   // Controls and words of the state that is shown.
@@ -273,21 +428,98 @@ class View {
   draw() {
     this.renderer.render(this.scene, this.camera);
     const { clientWidth: width, clientHeight: height } = this.names;
-    const placed = [...this.names.children].map((label) => {
-      const seen = label.place.clone().project(this.camera);
-      return { label, x: ((seen.x + 1) / 2) * width, y: ((1 - seen.y) / 2) * height };
-    });
-    placed.sort((one, other) => one.y - other.y);
-    let free = -LINE; // words below each other; their dots stay
-    for (const { label, x, y } of placed) {
-      label.hidden = x < 0 || y < 0 || x > width || y > height;
-      if (label.hidden) continue;
-      const line = Math.max(y, free);
-      free = line + LINE;
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
-      label.firstChild.style.top = `${(line - y).toFixed(1)}px`;
+    const seen = (place) => {
+      const own = place.clone().project(this.camera);
+      return [((own.x + 1) / 2) * width, ((1 - own.y) / 2) * height];
+    };
+    for (const line of this.#lines) {
+      line.seen = line.points.map(seen);
+      this.#draw(line, line.seen);
+    }
+    this.#labels.forEach((own) => { [own.x, own.y] = seen(own.place); });
+    this.#arrange(width, height);
+  }
+
+  // The first stretch of a line is what is measured, the others lead to the place; an error has a head.
+  #draw({ points, error, path, aside }, seen) {
+    const way = (own) => own.map(([x, y], k) => `${k ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+    const measured = seen.slice(0, 2), [[x, y], [u, v]] = [seen[0], seen[1] ?? seen[0]];
+    const long = Math.hypot(u - x, v - y);
+    let head = "";
+    if (points.length < 2 || long < HEAD) head = `M${x - HEAD} ${y}h${2 * HEAD}M${x} ${y - HEAD}v${2 * HEAD}`; // a place
+    else if (error) {
+      const [ahead, side] = [[(u - x) / long, (v - y) / long], [(y - v) / long, (u - x) / long]];
+      const back = Math.min(HEAD, long);
+      const corner = (sign) => `${u - back * ahead[0] + sign * 0.4 * back * side[0]} ${v - back * ahead[1] + sign * 0.4 * back * side[1]}`;
+      head = `M${corner(1)}L${u} ${v}L${corner(-1)}`;
+    }
+    path.setAttribute("d", way(measured) + head);
+    aside.setAttribute("d", way(seen.slice(1)));
+  }
+
+  // Words where they cover none that count more; others are hidden until a pointer is over their place.
+  #arrange(width, height) {
+    const weight = (own) => own === this.#over ? 0 : own.kind === "number" ? 1
+      : own.of.some((name) => this.#first.has(name)) ? 2 : own.kind === "name" ? 3 : 4;
+    const taken = this.#lines.flatMap((line) => line.seen.slice(0, 2).map(([x, y]) => [x - HEAD, y - HEAD, 2 * HEAD, 2 * HEAD]));
+    const ends = taken.length;
+    for (const own of [...this.#labels].sort((one, other) => weight(one) - weight(other))) {
+      const { element, words, x, y, size: [wide, high] } = own;
+      element.hidden = x < 0 || y < 0 || x > width || y > height;
+      if (element.hidden) continue;
+      const left = Math.max(Math.min(x + 8, width - wide - 2), 0) - x;
+      const boxes = (own.kind === "number" ? BESIDE : TRIES).map((lines) => [x + left, y - LINE / 2 + lines * LINE, wide, high]).filter((box) => box[1] >= 0 && box[1] + high <= height);
+      const box = boxes.find((one) => !taken.some((other) => covers(one, other)))
+        ?? (own === this.#over ? [x + left, Math.max(y - LINE / 2, 0), wide, high] : null);
+      element.classList.toggle("crowded", !box);
+      element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      if (!box) continue;
+      taken.push(box);
+      words.style.left = `${left.toFixed(1)}px`;
+      words.style.top = `${(box[1] - y).toFixed(1)}px`;
+    }
+    for (const { element, x, y } of this.#labels) {
+      element.classList.toggle("covered", taken.slice(ends).some((box) => covers([x, y, 0, 0], box)));
     }
   }
+
+  // The label whose place is under the pointer shows all of its words.
+  #look(event) {
+    let over = null;
+    if (event && !event.buttons) {
+      const box = this.renderer.domElement.getBoundingClientRect();
+      const off = (own) => own.element.hidden ? Infinity : Math.hypot(own.x - event.clientX + box.x, own.y - event.clientY + box.y);
+      over = this.#labels.filter((own) => off(own) < NEAR).sort((one, other) => off(one) - off(other))[0] ?? null;
+    }
+    if (over === this.#over) return;
+    const before = this.#over;
+    this.#over = over;
+    if (before) fill(before.words, before.lines);
+    if (over) fill(over.words, over.full ?? over.lines, Infinity);
+    for (const own of [before, over].filter((one) => one)) own.size = [own.words.offsetWidth, own.words.offsetHeight];
+    const { clientWidth: width, clientHeight: height } = this.names;
+    this.#arrange(width, height);
+  }
+}
+
+function covers([x, y, wide, high], [u, v, broad, tall]) {
+  return x < u + broad && u < x + wide && y < v + tall && v < y + high;
+}
+
+// True of a name itself, and of one of several that a scene states once: "bore 2" of "bore", "P1 of planet 2" of "P1".
+function is(name, stated) {
+  return name === stated || (name.startsWith(`${stated} `) && /^(\d+$|of )/.test(name.slice(stated.length + 1)));
+}
+
+// Lines of a label, no more than so many.
+function fill(words, every, most = MOST_LINES) {
+  const more = every.length - most, lines = more > 0 ? [...every.slice(0, most), `and ${more} more`] : every;
+  words.replaceChildren(...lines.flatMap((line, k) => k ? [document.createElement("br"), line] : [line]));
+}
+
+// A length in words, of mm.
+function length(mm) {
+  return mm < 1 ? `${(1000 * mm).toPrecision(3)} µm` : `${mm.toPrecision(4)} mm`;
 }
 
 // Geometries by the number in their name, with normals that show round faces round.
@@ -318,6 +550,7 @@ function tol3dView(figure, model, told) {
   return view;
 }
 
+tol3dView.is = is;
 window.tol3dView = tol3dView;
 
 async function show(figure, told, model) {

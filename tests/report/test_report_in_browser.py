@@ -125,6 +125,16 @@ def test_builds_stand_as_they_were_seated_and_deviations_grow(page: Page, spur: 
     assert (times, more) == ("1", "100")
     assert "magnified" in words
     assert np.abs(moved[0] - moved[1]).max() > 60
+    options = page.ask("[...document.querySelectorAll('[name=measured] option')].map(own => own.value)")
+    assert options == ["", "normal backlash", "lost motion"]
+    assert page.ask("document.querySelectorAll('.measured path').length") == 0
+    page.ask(
+        "(own => { own.value = 'normal backlash'; own.dispatchEvent(new Event('change', { bubbles: true })); })"
+        "(document.querySelector('[name=measured]'))"
+    )
+    number = page.ask("document.querySelector('.names .number').textContent")
+    assert number == f"normal backlash {worst:.3f} µm", "of the build itself, though its gap is drawn larger"
+    assert page.ask("document.querySelector('.measured path:not(.aside)').getTotalLength()") > 1
 
 
 @pytest.mark.slow

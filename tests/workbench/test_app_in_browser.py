@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 import uvicorn
 from browser import Page, browser
-from places import SPUR_PAIR
+from places import SCENES, SPUR_PAIR
 
 from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.server import Server, application
@@ -24,6 +24,7 @@ pytestmark = pytest.mark.slow
 
 SCENE, CENTRE, BACKLASH = "pair.yaml", "centre distance", "normal backlash"
 TEXT = SPUR_PAIR.read_text("utf-8").replace("trials: 2000", "trials: 200")
+DOOR = (SCENES / "door.yaml").read_text("utf-8").replace("trials: 20000", "trials: 200")
 KEYS = {"ArrowRight": 39, "ArrowDown": 40, "Tab": 9, "PageUp": 33, "z": 90, "s": 83, "?": 191, "Escape": 27}
 SLIDER = f'#sliders input[type=range][data-line="{CENTRE}"]'
 FIELD = f'#sliders input[type=text][data-line="{CENTRE}"]'
@@ -144,6 +145,7 @@ def app(tmp_path_factory: pytest.TempPathFactory) -> Iterator[App]:
     file = folder / SCENE
     file.write_text(TEXT, "utf-8")
     (folder / "other.yaml").write_text(TEXT, "utf-8")
+    (folder / "door.yaml").write_text(DOOR, "utf-8")
     with socket.create_server(("127.0.0.1", 0)) as listening, FolderLock(folder) as lock, browser() as page:
         own = Server(Workspace.of(file), lock)
         guarded = application(own, listening.getsockname()[1])
@@ -300,6 +302,84 @@ def test_words_that_a_tolerance_cannot_have_are_refused_at_their_field(app: App)
     app.page.wait("document.querySelector('#sliders .wrong') !== null")
     assert "expected a length with its unit" in app.page.ask("document.querySelector('#sliders .wrong').textContent")
     app.solid({})
+
+
+STAGED = "!/building/.test(document.querySelector('#stage-words').textContent)"
+POSES = "JSON.stringify([...document.querySelectorAll('.names span')].map((own) => own.place.toArray()))"
+
+
+def test_a_position_is_turned_by_its_slider_and_meshes_are_not_sent_again(app: App) -> None:
+    app.load()
+    app.page.wait(STAGED)
+    before, number = app.page.ask(POSES), "document.querySelector('#turns output').value"
+    assert app.page.ask(number) == "0.0°"
+    app.page.ask("window.sent = []; window.asked = window.fetch")
+    app.page.ask(
+        "window.fetch = async (...own) => { const found = await asked(...own);"
+        " if (own[0] === '/api/view') sent.push((await found.clone().arrayBuffer()).byteLength); return found; }, 0"
+    )
+    for event in ("input", "change"):
+        app.told("#turns input", event, 25)
+        app.page.wait(f"{POSES} !== {json.dumps(before)} && sent.length > 0 && {STAGED}")
+    assert app.page.ask(number) == "45.0°"
+    assert max(app.page.ask("sent")) < 20_000, "bytes: poses, no triangles"
+    app.told("#build", "change", "trial")
+    app.page.wait(f"document.querySelector('#stage-words').textContent.startsWith('trial 0') && {STAGED}")
+    app.told("#turns input", "change", 0)
+    assert app.page.ask(number) == "45.0°"
+    app.told("#turns input", "input", 0)
+    assert app.page.ask(number) == "as in the trial"
+    assert app.page.told == []
+
+
+def test_an_entry_of_the_tree_is_lit_and_flags_and_the_measure_are_drawn(app: App) -> None:
+    app.load()
+    app.page.wait(STAGED)
+    texts = "[...document.querySelectorAll('.names .flag')].map((own) => own.textContent)"
+    flags = app.page.ask(texts)
+    assert [own for own in flags if own.startswith("pinion, wheelcentre distance ±20 µm")]
+    assert [own for own in flags if own.startswith("pinion") and "tooth thickness -30 µm..-19 µm" in own]
+    assert BACKLASH in app.page.ask("document.querySelector('.names .number').textContent")
+    assert app.page.ask("document.querySelectorAll('.measured path').length") == 2
+    app.page.ask("document.querySelector('[name=flags]').click()")
+    assert app.page.ask(texts) == []
+    plain = app.page.picture("#stage .stage")
+    app.page.ask("document.querySelector('#tree button[data-name=pinion]').click()")
+    lit = app.page.picture("#stage .stage")
+    app.page.ask(f"document.querySelector('#tree button[data-name={json.dumps(BACKLASH)}]').click()")
+    app.page.wait(STAGED)
+    again = app.page.picture("#stage .stage")
+    orange = [float((own[..., 0] > own[..., 2] + 60).mean()) for own in (plain, lit, again)]
+    assert orange[0] > 0.05
+    assert orange[1] < 0.1 * orange[0], "the wheel is grey"
+    assert orange[2] == pytest.approx(orange[0], abs=5e-3), "a measure has no part of its own"
+    assert app.page.told == []
+
+
+def test_a_feature_that_is_clicked_is_found_in_tree_and_text_and_a_tolerance_lights_its_own(app: App) -> None:
+    app.load()
+    app.told("#scene", "change", "door.yaml")
+    labels = "[...document.querySelectorAll('.names span:not([hidden])')]"
+    app.page.wait(f"{labels}.some((own) => own.textContent.startsWith('body.striker')) && {STAGED}")
+    app.page.ask("document.querySelector('#stage').scrollIntoView()")
+    striker = f"{labels}.find((own) => own.textContent.startsWith('body.striker'))"
+    x, y = app.page.ask(f"(({{ x, y }}) => [x, y])({striker}.getBoundingClientRect())")
+    for kind in ("mousePressed", "mouseReleased"):
+        app.page.call("Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, x=x, y=y)
+    feature, line = app.page.ask(
+        "[document.activeElement.dataset.feature, Number(document.activeElement.dataset.line)]"
+    )
+    assert feature in ("body.striker", "door.striker"), "they touch"
+    assert DOOR.splitlines()[line - 1].strip().startswith("striker:")
+    assert app.page.ask("document.querySelector('.cm-activeLine').textContent").strip().startswith("striker:")
+    colours = "new Set([...document.querySelectorAll('#parts input')].map((own) => own.dataset.part)).size"
+    assert app.page.ask(colours) == 2
+    plain = app.page.picture("#stage .stage")
+    app.page.ask("document.querySelector('#tree button[data-name=\"body striker y\"]').click()")
+    lit = app.page.picture("#stage .stage")
+    blue = [float((own[..., 2] > own[..., 0] + 60).mean()) for own in (plain, lit)]
+    assert 0.0 < blue[1] < blue[0], "the striker alone is in colour"
+    assert app.page.told == []
 
 
 def test_what_another_program_writes_is_shown(app: App) -> None:

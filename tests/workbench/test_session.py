@@ -446,6 +446,49 @@ def test_sliders_are_sorted_by_the_shares_of_a_run_and_end_where_a_tolerance_can
     assert lines == sorted([*{*shares} - {CENTRE}], key=lambda name: -shares[name])
 
 
+def _picture(questions: Questions, **words: Any) -> dict[str, Any]:
+    answer = questions.view(asked(**words))()
+    found: dict[str, Any] = json.loads(answer[4 : 4 + int.from_bytes(answer[:4], "big")])
+    return found
+
+
+def test_a_build_that_is_not_there_has_a_sentence_and_the_nominal_one_is_shown(own: Questions) -> None:
+    before = _picture(own, builds=["worst"])
+    assert before["refused"] == {"worst": "no trial is simulated yet; shown is the nominal build"}
+    assert [build["name"] for build in before["builds"]] == ["nominal"]
+    sample(own)
+    after = _picture(own, builds=["worst"])
+    assert after["refused"] == {}
+    values = own.session(SCENE).evaluated(BACKLASH, {}).good
+    worst = int(np.argmin(values))
+    words = after["builds"][1]["states"][0]["words"]
+    assert words.startswith(f"trial {worst} of {TRIALS}, worst")
+    number, unit = after["builds"][1]["states"][0]["values"][BACKLASH].split(" ")
+    assert unit == "µm"
+    assert float(number) == pytest.approx(values.min(), abs=1e-3)
+    assert _picture(own, builds=["mean"])["builds"][1]["name"] == "mean"
+    with pytest.raises(InputError, match=f"expected a trial from 0 to {TRIALS - 1}, got {TRIALS}"):
+        own.view(asked(trial=TRIALS))
+
+
+def test_while_a_slider_is_held_a_build_has_one_factor(own: Questions) -> None:
+    def factors(**words: Any) -> list[float]:
+        return [state["factor"] for state in _picture(own, trial=3, **words)["builds"][1]["states"]]
+
+    assert factors() == [1.0, 10.0, 100.0]
+    assert factors(factor=10) == [10.0]
+
+
+def test_a_changed_scene_is_shown_anew(own: Questions) -> None:
+    first = _picture(own)
+    known = {"collection": first["collection"], "meshes": first["meshes"]}
+    assert _picture(own, known=known)["first"] == first["meshes"] == 2
+    path_of(own).write_text(TEXT.replace("scene: spur pair", "scene: another pair"), "utf-8")
+    again = _picture(own, known=known)
+    assert again["first"] == 0
+    assert again["collection"] != first["collection"]
+
+
 def test_as_many_scenes_as_are_allowed_stay_open(tmp_path: Path) -> None:
     questions = opened(tmp_path)
     for k in range(5):

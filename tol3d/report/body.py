@@ -107,6 +107,34 @@ class Arrow:
 
 
 @dataclass(frozen=True, eq=False)
+class Placed:
+    """A feature of a part where it lies in a world.
+
+    Args:
+        part: its part's name.
+        frame: (4, 4), rotation and translation [mm].
+        reach: half sizes (3,) of the box about it, along the axes of its frame [mm].
+    """
+
+    part: str
+    frame: Array
+    reach: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredLine:
+    """A line along which a measure is read.
+
+    Args:
+        points: (points, 3) [mm], the first two apart by what is measured; one alone: where it is read.
+        is_error: True if the line leads from the place where its end lies nominally.
+    """
+
+    points: Array
+    is_error: bool = False
+
+
+@dataclass(frozen=True, eq=False)
 class World:
     """Bodies that stand in one world.
 
@@ -118,6 +146,8 @@ class World:
         arrows: what pictures show besides the bodies, by name.
         up: unit vector (3,) to the top of a picture.
         marks: contacts and gaps, which a page's 3D view names too, (3,) [mm].
+        features: of its parts, by name.
+        measured: lines of each measure that is read in this world, by the measure's name.
     """
 
     name: str
@@ -127,6 +157,8 @@ class World:
     arrows: Mapping[str, Arrow] = field(default_factory=dict)
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
     marks: Mapping[str, Array] = field(default_factory=dict)
+    features: Mapping[str, Placed] = field(default_factory=dict)
+    measured: Mapping[str, tuple[MeasuredLine, ...]] = field(default_factory=dict)
 
 
 def built_body(

@@ -277,7 +277,7 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
     if now_class and size:
         words.insert(0, tag("span", class_words(now_class, size), class_="class-words"))
     offered = neighbours(now_class or own_class, size) if size else ()
-    scene_words, listed = own_class or _written(contributor, draw), "-".join(("classes", "of", *line.split()))
+    scene_words, listed = own_class or written(contributor, draw), "-".join(("classes", "of", *line.split()))
     if share is not None:
         words.append(tag("span", f"{percent_text(share)} %", class_="share"))
     ends = _ends(scope)
@@ -295,7 +295,7 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
                     aria_label=f"{line}: how wide", title=_why(scope),
                 ),
                 tag(
-                    "input", type="text", value=now_class or (_written(contributor, other) if moved else scene_words),
+                    "input", type="text", value=now_class or (written(contributor, other) if moved else scene_words),
                     data_line=line, data_scene=scene_words, aria_label=f"{line}: tolerance",
                     list=listed if offered else None,
                 ),
@@ -323,7 +323,7 @@ def written_words(session: Session, now: WhatIf) -> Mapping[str, str]:
             found[line] = words
             continue
         name = response.lines[line][0]
-        found[line] = _class(words) or _written(known[name], response.drawn_by(name))
+        found[line] = _class(words) or written(known[name], response.drawn_by(name))
     return found
 
 
@@ -358,7 +358,7 @@ def _width(draw: Draw) -> float:
     return float(getattr(law, "scale", law.sigma))
 
 
-def _written(contributor: Contributor, draw: Draw) -> str:
+def written(contributor: Contributor, draw: Draw) -> str:
     """A tolerance as `--set` takes it, with the signs of reports: ±20 µm, -30 µm..-19 µm, or the width of a zone."""
     per, law = contributor.per_unit, draw.distribution
     unit = "" if contributor.unit == "1" else signed_units(f" {contributor.unit}")

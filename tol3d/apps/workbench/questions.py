@@ -5,7 +5,6 @@ made, from which shares of contributors come. The page names scenes by the works
 """
 
 import difflib
-import json
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -15,16 +14,16 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from tol3d.analyses.kept_changes import scene_with
-from tol3d.apps.workbench.builds import build_view
+from tol3d.apps.workbench.builds import FACTORS, Known, Row, Stage, positions_at, turnable
 from tol3d.apps.workbench.card import answer, histogram, limit_fields, result, sliders, written_words
+from tol3d.apps.workbench.flags import flags
 from tol3d.apps.workbench.forms import ANALYSES, FormScene, form, line_words
 from tol3d.apps.workbench.place import FolderLock
 from tol3d.apps.workbench.session import AT_ONCE, FEW, NoEstimate, Session, Turn
 from tol3d.apps.workbench.text_check import checked
 from tol3d.apps.workbench.tree import parts_of, tree
 from tol3d.apps.workbench.workspace import MOST_KEPT, Notes, Told, Workspace, digest, written
-from tol3d.errors import InputError, Tol3dError
-from tol3d.numerics.arrays import Array
+from tol3d.errors import InputError
 from tol3d.report.html.blocks import tag
 from tol3d.simulate import Overrides, run_scene
 from tol3d.study.runs.run import Run
@@ -56,6 +55,7 @@ class Questions:
     run_builders: bool = False
     sessions: dict[str, Session] = field(default_factory=dict)
     runs: dict[str, "Future[Run]"] = field(default_factory=dict)
+    stages: dict[str, Stage] = field(default_factory=dict)
     beside: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "shares"))
     looks: ThreadPoolExecutor = field(default_factory=partial(ThreadPoolExecutor, 1, "looks"))
     scratch: TemporaryDirectory[str] = field(default_factory=partial(TemporaryDirectory, prefix="tol3d-app-"))
@@ -107,8 +107,9 @@ class Questions:
             "measures": measures,
             "tree": tree(session.scene),
             "warnings": [*session.simulation.warnings],
-            "turns": bool(session.simulation.system.streams),
             "trials": session.simulation.study.trials,
+            "positions": turnable(session.simulation.system),
+            "flags": flags(session),
             "compiled": session.simulation.system.is_compiled(session.simulation.study.engine),
         }
 
@@ -168,38 +169,52 @@ class Questions:
         }
 
     def view(self, asked: Told) -> Callable[[], bytes]:
-        """Builds in 3D: the nominal one, and the mean, the worst or one trial: length and text of JSON, then a GLB.
+        """Builds in 3D, the nominal one and another: see `Stage.picture`.
 
         Solids take seconds: what makes them is called where nobody waits.
         """
         session, measure, now = self._asked(asked)
-        rows = dict[str, tuple[Array, Mapping[str, Array] | None]]()
-        if "mean" in asked.get("builds", ()):
-            rows["mean"] = (session.changed(now).mean, None)
-        evaluated = session.evaluated(measure, now).within(session.limits(now))
-        if "worst" in asked.get("builds", ()) and evaluated.done:
-            rows["worst"] = evaluated.trial(evaluated.worst)
+        rows, refused = self._rows(session, measure, now, asked)
+        shares, known, factor = asked.get("positions") or {}, asked.get("known") or {}, asked.get("factor")
+        if factor is not None and factor not in FACTORS:
+            raise InputError(f"expected a factor of {', '.join(f'{own:g}' for own in FACTORS)}, got {factor!r}")
+        at = positions_at(session.simulation.system, {str(key): float(own) for key, own in shares.items()})
+        stage = self.stages.pop(str(asked["scene"]), None)
+        if stage is None or stage.simulation is not session.simulation:
+            stage = Stage(session.simulation)
+        self.stages[str(asked["scene"])] = stage
+        while len(self.stages) > MOST_OPEN:
+            del self.stages[next(iter(self.stages))]
+        return partial(
+            stage.picture,
+            rows,
+            known=Known(str(known.get("collection", "")), int(known.get("meshes", 0))),
+            world=str(asked.get("world", "")),
+            refused=refused,
+            measure=measure,
+            at=at if shares else None,
+            factors=FACTORS if factor is None else (float(factor),),
+        )
+
+    def _rows(
+        self, session: Session, measure: str, now: Mapping[str, str], asked: Told
+    ) -> tuple[Mapping[str, Row], Mapping[str, str]]:
+        """Builds that are asked for; and those that are not there, with the reason."""
+        evaluated, builds = session.evaluated(measure, now).within(session.limits(now)), asked.get("builds", ())
+        if "mean" in builds:
+            return {"mean": Row(session.changed(now).mean)}, {}
+        if "worst" in builds:
+            if not len(evaluated.good):
+                why = "no trial could be assembled" if evaluated.done else "no trial is simulated yet"
+                return {}, {"worst": f"{why}; shown is the nominal build"}
+            return {
+                "worst": Row(*evaluated.trial(evaluated.worst), f"trial {evaluated.worst} of {evaluated.done}, ")
+            }, {}
         if (trial := asked.get("trial")) is not None:
             if not 0 <= int(trial) < evaluated.count:
                 raise InputError(f"expected a trial from 0 to {evaluated.count - 1}, got {trial}")
-            rows[f"trial {int(trial)}"] = evaluated.trial(int(trial))
-        if (turn := asked.get("turn")) is not None:
-            at = session.positions(min(max(float(turn), 0.0), 1.0))
-            rows = {name: (deviations, at) for name, (deviations, _) in rows.items()} or {
-                "turned": (session.nominal, at)
-            }
-
-        def built() -> bytes:
-            try:
-                model, words = build_view(session.simulation, rows)
-            except InputError:
-                raise
-            except Tol3dError as error:
-                raise InputError(f"there is nothing to show in 3D: {error}") from None
-            head = json.dumps(words, allow_nan=False).encode()
-            return len(head).to_bytes(4, "big") + head + model
-
-        return built
+            return {f"trial {int(trial)}": Row(*evaluated.trial(int(trial)))}, {}
+        return {}, {}
 
     def forms(self, asked: Told) -> Told:
         """Fields of an analysis of a scene; moved tolerances are those of what-if."""

@@ -32,7 +32,6 @@ from tol3d.simulate import load, simulation_of
 from tol3d.study import Simulation
 from tol3d.study.runs.summary.judged import Accepted, JudgedMeasure, demand_of
 from tol3d.study.runs.summary.sample import Sample
-from tol3d.study.system import nominal_build
 from tol3d.study.system.measure import Measure
 from tol3d.study.trials.draws import KeptDraws
 from tol3d.units import Quantity
@@ -383,17 +382,6 @@ class Session:
             lines = self.response.lines.items()
             self._acting[measure] = tuple(line for line, own in lines if not names.isdisjoint(own))
         return self._acting[measure]
-
-    @property
-    def nominal(self) -> Array:
-        """Deviations of the nominal build (components,)."""
-        return np.asarray(nominal_build(self.simulation.system).deviations[0])
-
-    def positions(self, share: float) -> Mapping[str, Array]:
-        """Positions of meshes and joints at a share of all that trials are drawn from, all of them at the same."""
-        system = self.simulation.system
-        found = system.positions({key: np.full(1, share) for key in system.streams})
-        return {name: own[0] for name, own in found.items()}
 
     def measure(self, name: str) -> Measure:
         """A measure by its name, the first for "".

@@ -40,6 +40,7 @@ def _button(scene: Scene, path: KeyPath, name: str, words: str) -> Markup:
     about = tag("span", words, class_="dim") if words else None
     return tag(
         "button", name, about, type="button", data_line=line, data_section=str(path[0]), data_name=str(path[1]),
+        data_feature=f"{path[1]}.{path[3]}" if path[2:3] == ("features",) else None,
         title=f"{place.file}:{place.line}" if place.file else None,
     )  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 symbols         closed surfaces that represent features
 shown_assembly  a build's parts, for pictures and files of triangles
+measured_lines  lines along which measures are read
 tables          tables of a scene
 parts_tree      tree of parts that lie on others
 """

@@ -10,18 +10,21 @@ import numpy as np
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.posed import PosedSystem
+from tol3d.assembly.presenting.measured_lines import measured_lines
 from tol3d.assembly.presenting.symbols import (
     joined_symbols,
     labels,
     mark_counts,
     marks_on_solid,
+    reach_of,
     symbol_counts,
     unnamed,
 )
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError, RunError
 from tol3d.numerics.arrays import Array
-from tol3d.report.body import Body, World, built_body
+from tol3d.report import body
+from tol3d.report.body import Body, MeasuredLine, World, built_body
 from tol3d.report.motion import Frame, Motion, Shot, around, corner
 from tol3d.report.presenter import View, Which
 from tol3d.study.results.replaying import Replay, build_of, enlarged
@@ -72,6 +75,17 @@ class Placed:
         """Points of features that are named in pictures (3,) [mm], by label."""
         return {label: self.frames[name][:3, 3] for name, label in labels(self.assembly).items()}
 
+    @property
+    def features(self) -> Mapping[str, body.Placed]:
+        """Named features, as a world has them."""
+        named = {name: own for name, own in self.assembly.features.items() if own.is_named}
+        return {name: body.Placed(own.part, self.frames[name], reach_of(own.shape)) for name, own in named.items()}
+
+    @property
+    def measured(self) -> Mapping[str, tuple[MeasuredLine, ...]]:
+        """Lines of measures, as a world has them."""
+        return measured_lines(self.assembly, self.frames, self.poses)
+
 
 @dataclass(frozen=True)
 class ShownAssembly:
@@ -98,7 +112,14 @@ class ShownAssembly:
 
     @staticmethod
     def _world(name: str, placed: Placed) -> World:
-        return World(name, bodies(placed), points=placed.points, up=(0.0, 0.0, 1.0))
+        return World(
+            name,
+            bodies(placed),
+            points=placed.points,
+            up=(0.0, 0.0, 1.0),
+            features=placed.features,
+            measured=placed.measured,
+        )
 
     @property
     def _posed(self) -> PosedSystem | None:

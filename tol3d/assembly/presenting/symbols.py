@@ -108,6 +108,11 @@ def _(shape: Cone, thickness: float) -> Surface:
     return frustum(start / 2 - half, end / 2 - half, shape.length, 2 * half)
 
 
+def reach_of(shape: Facts) -> Array:
+    """Half sizes (3,) of the box about a feature, along the axes of its frame [mm]."""
+    return np.asarray(np.abs(symbol(shape, 0.0)[0]).max(axis=0))
+
+
 def edges(reach: tuple[float, float], width: float, low: float, high: float) -> Surface:
     """Four bars along the inside of a rectangle's edges, from one height to another [mm]."""
     a, b = reach

@@ -7,6 +7,7 @@ import warnings
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
+from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import Final
 
@@ -97,6 +98,7 @@ def _builder_modules(shape: Gear | Body | BuiltShape) -> tuple[str, ...]:
     return (shape.builder.partition(":")[0],) if isinstance(shape, BuiltShape) else ()
 
 
+@lru_cache
 def _version(package: str) -> str:
     try:
         return version(package)

@@ -26,6 +26,7 @@ SYMBOLS: Final = {
 """The sign of each kind of tolerance. Source: ISO 1101:2017, table 1."""
 
 ZONE_SIGNS: Final = {"width": "", "diameter": "⌀", "spherical diameter": "S⌀"}
+"""The sign before the size of a zone, by its shape."""
 
 MODIFIER_SIGNS: Final = {
     "maximum material requirement": "Ⓜ",

@@ -1,7 +1,7 @@
 """A build of gears as it is shown and exported: single pairs each in its own world, trains in one."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import import_module
@@ -11,11 +11,12 @@ import numpy as np
 
 from tol3d.errors import InputError
 from tol3d.gearing.meshing.mesh import MeshSeat
+from tol3d.gearing.model import LostMotion
 from tol3d.gearing.presenting.whole_trains import WholeTrain, gear_body, whole_trains
 from tol3d.gearing.shown.display import SeatedBuild, Side, seated_mesh, seats_turned, shows_shafts
 from tol3d.gearing.shown.placed import SeatedMesh
 from tol3d.numerics.arrays import Array
-from tol3d.report.body import World
+from tol3d.report.body import MeasuredLine, World
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around, corner
 from tol3d.report.presenter import Panel, View
 from tol3d.scene.name import LONGEST_NAME
@@ -199,7 +200,9 @@ class GearDisplay:
     @cached_property
     def worlds(self) -> tuple[World, ...]:
         """A world a tree of shafts, or where there are only single pairs a world a mesh."""
-        return tuple(train.world for train in self.trains) or tuple(_pair(mesh) for mesh in self.build.meshes)
+        if self.trains:
+            return tuple(replace(train.world, measured=_measured(self.build, train)) for train in self.trains)
+        return tuple(replace(_pair(own), measured=_gaps(self.build, (own,))) for own in self.build.meshes)
 
     @property
     def motions(self) -> tuple[str, ...]:
@@ -251,6 +254,28 @@ class GearDisplay:
         if len(trains) > 1:
             others = [train.root for train in trains[1:]]
             yield f"shown are the shafts downstream of {trains[0].root}, not those of {', '.join(others)}"
+
+
+def _measured(build: SeatedBuild, train: WholeTrain) -> Mapping[str, tuple[MeasuredLine, ...]]:
+    """Lines of measures on a train: tips of arms, gaps of the others."""
+    found = dict(_gaps(build, [own for own in build.meshes if own.driver.name in train.shaft_of]))
+    for measure in build.model.measures:
+        tip = measure.kind.tip if isinstance(measure.kind, LostMotion) else None
+        place = train.points.get(f"{tip.point} of {tip.arm}") if tip else None
+        if place is not None:
+            found[measure.name] = (MeasuredLine(place[None]),)
+    return found
+
+
+def _gaps(build: SeatedBuild, meshes: Sequence[SeatedMesh]) -> Mapping[str, tuple[MeasuredLine, ...]]:
+    """Lines across the gaps that each measure reads or adds up."""
+    gaps = {own.mesh.name: np.stack([_point(build, own, end) for end in own.gap]) for own in meshes}
+    found = dict[str, tuple[MeasuredLine, ...]]()
+    for measure in build.model.measures:
+        read = [gaps[own.mesh] for _, own in measure.kind.backlashes if own.mesh in gaps]
+        if lines := tuple(MeasuredLine(own) for own in read if np.isfinite(own).all()):
+            found[measure.name] = lines
+    return found
 
 
 def _pair(seated: SeatedMesh) -> World:

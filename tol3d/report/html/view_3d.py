@@ -55,7 +55,8 @@ def view_3d(run: Run, presenter: Presenter, trials: Sequence[int] = ()) -> Marku
     model = ViewModel()
     for which in wanted:
         try:
-            model.add(_called(which), _displays(run, presenter, which))
+            displays = [*_displays(run, presenter, which)]
+            model.add(_called(which), displays, _values(run, which, displays[0][1].label))
         except Tol3dError as error:
             if not model.builds:
                 return tag("p", f"no 3D view: {error}", class_="note")
@@ -81,7 +82,13 @@ def _packed(model: ViewModel) -> bytes:
 
 
 def _measured(run: Run, which: Which, label: str) -> str:
-    """A build with the values of the measures that are shown, of the best method there is."""
+    """A build with the values of the measures that are shown."""
+    told = [f"{name} {own}" for name, own in _values(run, which, label).items()]
+    return f"{label}: {', '.join(told)}" if told else label
+
+
+def _values(run: Run, which: Which, label: str) -> dict[str, str]:
+    """Values of the measures that are shown, of the best method there is, in words."""
     shown = shown_run(run.found).measures
     trial = TRIAL.fullmatch(label)
     values = dict[str, float | None]()
@@ -95,8 +102,7 @@ def _measured(run: Run, which: Which, label: str) -> str:
             column = value_column(measure.best_method, name)
             per = 1.0 if run.found.measures[name].unit == measure.unit else 1e-3
             values[name] = per * float(run.columns(column)[column][int(trial[1])])
-    told = [f"{name} {measured_text(own, shown[name].unit)}" for name, own in values.items() if own is not None]
-    return f"{label}: {', '.join(told)}" if told else label
+    return {name: measured_text(own, shown[name].unit) for name, own in values.items() if own is not None}
 
 
 def _called(which: Which) -> str:
@@ -168,6 +174,8 @@ def _figure(model: ViewModel, packed: bytes, still: str, notes: Sequence[str]) -
 
 def _controls(model: ViewModel) -> Iterator[Markup]:
     options = (tag("option", own.name, value=number) for number, own in enumerate(model.builds))
+    measured = dict.fromkeys(name for own in model.builds for state in own.states for name in state.measured)
+    measures = (tag("option", name, value=name) for name in measured)
     slider = tag("input", type="range", name_="factor", min=0, max=len(FACTORS) - 1, value=0, step=1)
     number = tag("output", f"{FACTORS[0]:g}", name_="times")
     yield tag(
@@ -175,6 +183,9 @@ def _controls(model: ViewModel) -> Iterator[Markup]:
         tag("label", "build ", tag("select", *options, name_="build")),
         tag("label", "deviations × ", number, " ", slider),
         tag("label", tag("input", type="checkbox", name_="names", checked=""), " names"),
+        tag("label", "measure ", tag("select", tag("option", "none", value=""), *measures, name_="measured"))
+        if measured
+        else None,
         tag("button", "fit", type="button", name_="fit"),
         tag("span", "drag turns, wheel zooms, double click fits", class_="dim"),
         class_="controls",

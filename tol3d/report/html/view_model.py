@@ -3,7 +3,7 @@
 The report embeds both, a server may serve them; `viewer.js` draws them. VTK is not needed.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Final, cast
 
@@ -30,6 +30,10 @@ class State:
         words: its measures, and notes.
         meshes, poses: of each part, which of the model's meshes, and where (16 numbers, column by column) [mm].
         names: of contacts, gaps and other places (3 numbers) [mm].
+        features: places of features (3 numbers) [mm].
+        measured: of each measure the lines along which it is read: points (3 numbers each) [mm], and whether they
+            lead from where the last one lies nominally.
+        values: of measures, in words.
     """
 
     factor: float
@@ -37,6 +41,9 @@ class State:
     meshes: tuple[int, ...]
     poses: tuple[list[float], ...]
     names: dict[str, list[float]]
+    features: dict[str, list[float]] = field(default_factory=dict)
+    measured: dict[str, list[tuple[list[list[float]], bool]]] = field(default_factory=dict)
+    values: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,13 +92,22 @@ class ViewModel:
     world: World | None = None
     _of_parts: dict[str, list[int]] = field(default_factory=dict, init=False)
 
-    def add(self, name: str, displays: Iterable[tuple[float, Display, str]]) -> None:
+    def kept(self) -> "ViewModel":
+        """The same meshes for other builds, which share them as they are added."""
+        found = ViewModel(self.world.name if self.world else self.wanted, self.surfaces, self.parts)
+        found._of_parts = self._of_parts
+        return found
+
+    def add(
+        self, name: str, displays: Iterable[tuple[float, Display, str]], values: Mapping[str, str] | None = None
+    ) -> None:
         """Add a build.
 
         Args:
             name: of the build.
             displays: of the build at each factor of its deviations, with its words. Of the first the world that
                 is wanted is shown, of the others that of its name.
+            values: of measures, in words.
 
         Raises:
             Tol3dError: it has no bodies in that world; or `displays` raises it.
@@ -105,11 +121,14 @@ class ViewModel:
             placed = [self._place(piece) for _, piece in pieces]
             shown, parts = shown or world, parts or tuple(_part(body, piece) for body, piece in pieces)
             poses = tuple(_pose(piece, on) for (_, piece), (_, on) in zip(pieces, placed, strict=True))
-            names = {
-                label: [float(f"{own:.9g}") for own in place]
-                for label, place in {**world.points, **world.marks}.items()
+            names = {label: _place(place) for label, place in {**world.points, **world.marks}.items()}
+            features = {label: _place(own.frame[:3, 3]) for label, own in world.features.items()}
+            measured = {
+                label: [([_place(point) for point in line.points], line.is_error) for line in lines]
+                for label, lines in world.measured.items()
             }
-            states.append(State(factor, words, tuple(mesh for mesh, _ in placed), poses, names))
+            meshes = tuple(mesh for mesh, _ in placed)
+            states.append(State(factor, words, meshes, poses, names, features, measured, values or {}))
         if not states:
             raise Tol3dError(f"{name}: there is nothing to show in 3D")
         self.world, self.parts = shown, parts
@@ -129,20 +148,28 @@ class ViewModel:
         self.surfaces.append((np.round(np.asarray(vertices, dtype=np.float64) / GRID) * GRID, triangles))
         return len(self.surfaces) - 1, np.eye(4)
 
-    def glb(self) -> bytes:
-        """The meshes `mesh-0`, `mesh-1`, ... as a GLB [mm], written the same way every time."""
+    def glb(self, first: int = 0) -> bytes:
+        """The meshes `mesh-0`, `mesh-1`, ... from a number on as a GLB [mm], written the same way every time."""
         scene = trimesh.Scene()
-        for number, (vertices, triangles) in enumerate(self.surfaces):
+        for number, (vertices, triangles) in enumerate(self.surfaces[first:], first):
             mesh = trimesh.Trimesh(vertices, triangles, process=False)
             scene.add_geometry(mesh, node_name=f"mesh-{number}", geom_name=f"mesh-{number}")
         return cast(bytes, scene.export(file_type="glb"))
 
     def told(self) -> dict[str, Any]:
-        """The bodies and the builds, for JSON: `world`, `up`, `parts` (ShownPart) and `builds` (ShownBuild)."""
+        """The bodies and the builds, for JSON.
+
+        They are `world`, `up`, `parts` (ShownPart) and `builds` (ShownBuild); and of `features` the part, the frame
+        (16 numbers, column by column) and the reach (3 numbers) [mm], as they lie in the first build.
+        """
         assert self.world is not None, "there is a build"
         return {
             "world": self.world.name,
             "up": list(self.world.up),
+            "features": {
+                name: {"part": own.part, "frame": _place(own.frame.T.ravel()), "reach": _place(own.reach)}
+                for name, own in self.world.features.items()
+            },
             "parts": [asdict(part) for part in self.parts],
             "builds": [asdict(build) for build in self.builds],
         }
@@ -206,6 +233,10 @@ def _part(body: Body, piece: Body) -> ShownPart:
             found.append((name, end, count))
             end += count
     return ShownPart(piece.name, body.name, piece.colour, piece.opacity, tuple(found))
+
+
+def _place(numbers: Array) -> list[float]:
+    return [float(f"{own:.9g}") for own in numbers]
 
 
 def _pose(body: Body, on_part: Array) -> list[float]:

@@ -49,8 +49,8 @@ export async function open(name) {
   $("dropped").hidden = !found.dropped.length;
   $("tree").innerHTML = found.tree;
   $("trials").placeholder = found.trials;
-  $("turning").hidden = !found.turns;
-  $("turn").value = 0;
+  app.positions = found.positions;
+  app.flags = found.flags;
   $("measure").replaceChildren(...found.measures.map((own) => new Option(own.name, own.name)));
   const names = found.measures.map((own) => own.name);
   $("measure").value = app.measure = names.includes(found.notes.measure) ? found.notes.measure : names[0];

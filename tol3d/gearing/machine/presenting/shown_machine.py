@@ -54,7 +54,17 @@ class ShownMachine:
     def worlds(self) -> tuple[World, ...]:
         """The parts in every pose; then the worlds of the gears, each with the parts around them."""
         up = self.system.up
-        posed = (World(pose, bodies(own, COLOURS), points=own.points, up=up) for pose, own in self.poses.items())
+        posed = (
+            World(
+                pose,
+                bodies(own, COLOURS),
+                points=own.points,
+                up=up,
+                features=own.features,
+                measured=own.measured,
+            )
+            for pose, own in self.poses.items()
+        )
         return (*posed, *(self._with_parts(world) for world in self.gears.worlds))
 
     def _with_parts(self, world: World) -> World:
@@ -63,7 +73,14 @@ class ShownMachine:
             return world
         placed = self.placed.seen_from(into)
         points = {**world.points, **placed.points}
-        return replace(world, bodies=(*world.bodies, *bodies(placed, COLOURS)), points=points, one_file=True)
+        return replace(
+            world,
+            bodies=(*world.bodies, *bodies(placed, COLOURS)),
+            points=points,
+            one_file=True,
+            features=placed.features,
+            measured={**world.measured, **placed.measured},
+        )
 
     def _world_from_parts(self, name: str) -> Array | None:
         """Pose of the world of the parts in that of a train, or of a mesh; None if the train has no bores."""
