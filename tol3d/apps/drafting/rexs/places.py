@@ -1,0 +1,152 @@
+"""Positions of a REXS text's components, and its shafts: what couplings join turns as one."""
+
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+import numpy as np
+
+from tol3d.apps.drafting.rexs.document import Component, Document, RexsError
+from tol3d.apps.drafting.rexs.gearbox import Gear, Shaft
+from tol3d.numerics.arrays import Array
+
+COUPLINGS: Final = ("coupling", "switchable_coupling")
+HOUSINGS: Final = ("gear_casing", "gear_unit")
+SQUARE: Final = 1e-4  # of unit vectors; files print them with 6 digits and more
+DEEPEST: Final = 50  # positions that refer to positions
+
+
+def pose_of(document: Document, component: Component) -> Array | None:
+    """World from a component's u, v, w axes (4, 4) [mm], v = w × u; None if the file does not state it.
+
+    Raises:
+        RexsError: positions refer to each other in a ring, or axes are not square to each other.
+    """
+    pose, asked = np.eye(4), component
+    for _ in range(DEEPEST):
+        own = _local(asked)
+        if own is None:
+            return None if asked is component else pose
+        pose = own @ pose
+        reference = asked.whole("reference_component_for_position")
+        if reference is None or reference == asked.id:
+            return np.asarray(pose)
+        if reference not in document.components:
+            raise RexsError(
+                f"{asked}: reference_component_for_position: expected a component of the file, got the id {reference}, "
+                "which it does not have"
+            )
+        asked = document.components[reference]
+    raise RexsError(f"{component}: expected a position that refers to no position of its own, got a ring")
+
+
+def _local(component: Component) -> Array | None:
+    """Pose in the frame of the component that it refers to."""
+    at, u = component.vector("support_vector"), component.vector("u_axis_vector")
+    if at is None or u is None:
+        return None
+    along = np.array(u)
+    written = component.vector("w_axis_vector")
+    up = np.array(_any_square(along) if written is None else written)
+    if not (np.linalg.norm(along) > SQUARE and np.linalg.norm(up) > SQUARE):
+        raise RexsError(f"{component}: expected u and w axes with a length, got none")
+    along, up = along / np.linalg.norm(along), up / np.linalg.norm(up)
+    if abs(along @ up) > SQUARE:
+        raise RexsError(f"{component}: expected a w axis square to the u axis, got another")
+    pose = np.eye(4)
+    pose[:3, 0], pose[:3, 1], pose[:3, 2], pose[:3, 3] = along, np.cross(up, along), up, at
+    return pose
+
+
+def _any_square(along: Array) -> Array:
+    start = np.eye(3)[int(np.argmin(np.abs(along)))]
+    return np.asarray(np.cross(np.cross(along, start), along))
+
+
+def shafts_of(document: Document, gears: Mapping[int, Gear]) -> list[Shaft]:
+    """Shafts that carry gears or a carrier, in the order of the file; those that couplings join are one.
+
+    Raises:
+        RexsError: a gear is on two shafts.
+    """
+    group = _joined(document)
+    carried: dict[int, int] = {}
+    for relation in document.of_type.get("assembly", ()):
+        gear, shaft = relation.one("part"), relation.one("assembly")
+        is_on_shaft = gear in gears and document.components[shaft].type == "shaft"
+        if is_on_shaft and carried.setdefault(gear, shaft) != shaft:
+            others = f"{carried[gear]} and {shaft}"
+            raise RexsError(f"{document.components[gear]}: expected it on one shaft, got {others}")
+    carriers = [own.one("shaft") for own in document.of_type.get("planet_carrier_shaft", ())]
+    heads: dict[int, list[int]] = {}
+    for shaft in dict.fromkeys((*sorted(carried.values()), *carriers)):
+        heads.setdefault(group[shaft], []).append(shaft)
+    held = set(_held(document, group))
+    loaded = {
+        group[own.one("assembly")]
+        for own in document.of_type.get("assembly", ())
+        if document.components[own.one("part")].type == "external_load" and own.one("assembly") in group
+    }
+    return [
+        Shaft(
+            ids,
+            document.components[ids[0]].name,
+            pose_of(document, document.components[ids[0]]),
+            [gears[own] for own, on in carried.items() if on in ids],
+            _offsets(document, ids, carried),
+            head in held,
+            head in loaded,
+        )
+        for head, ids in heads.items()
+    ]
+
+
+def _couplings(document: Document) -> Iterator[tuple[Component, Component]]:
+    """Components that an engaged coupling joins."""
+    for relation in document.of_type.get("side", ()):
+        coupling = document.components[relation.one("assembly")]
+        if coupling.type in COUPLINGS and coupling.flag("is_engaged") is not False:
+            yield document.components[relation.one("inner_part")], document.components[relation.one("outer_part")]
+
+
+def _joined(document: Document) -> dict[int, int]:
+    """The first component of those that turn with each component: couplings join them, and a carrier its parts."""
+    group = {own: own for own in document.components}
+
+    def join(first: int, second: int) -> None:
+        low, high = sorted((group[first], group[second]))
+        if low != high:
+            for each, head in group.items():
+                group[each] = low if head == high else head
+
+    for inner, outer in _couplings(document):
+        if not {inner.type, outer.type} & {*HOUSINGS}:
+            join(inner.id, outer.id)
+    planets = {own.one("shaft") for own in document.of_type.get("planet_shaft", ())}
+    for relation in document.of_type.get("assembly", ()):
+        carrier, part = relation.one("assembly"), relation.one("part")
+        if document.components[carrier].type == "planet_carrier" and part not in planets:
+            join(carrier, part)
+    for own in document.of_type.get("planet_carrier_shaft", ()):
+        for relation in document.of_type.get("assembly", ()):
+            held = document.components[relation.one("part")]
+            if held.type == "planet_carrier" and relation.one("assembly") == own.one("planetary_stage"):
+                join(held.id, own.one("shaft"))
+    return group
+
+
+def _held(document: Document, group: Mapping[int, int]) -> Iterator[int]:
+    """Groups that a coupling joins to the casing."""
+    for inner, outer in _couplings(document):
+        if {inner.type, outer.type} & {*HOUSINGS}:
+            yield group[outer.id if inner.type in HOUSINGS else inner.id]
+
+
+def _offsets(document: Document, ids: list[int], carried: Mapping[int, int]) -> dict[int, float]:
+    """Start of each shaft of those that are joined, also of that of each gear, along the first one's u [mm]."""
+    poses = {own: pose_of(document, document.components[own]) for own in ids}
+    first = poses[ids[0]]
+    along = {
+        own: 0.0 if pose is None or first is None else float((pose - first)[:3, 3] @ first[:3, 0])
+        for own, pose in poses.items()
+    }
+    return along | {gear: along[shaft] for gear, shaft in carried.items() if shaft in along}
