@@ -163,7 +163,7 @@ class Writer:
             helix_angle_reference_diameter=(helix, "deg"),
             face_width=(15.0, "mm"),
             u_coordinate_on_shaft=(start, "mm"),
-                **stated,
+            **stated,
         )
         self.relate("assembly", assembly=shaft, part=number)
         shifted: dict[str, tuple[Value, str]] = (

@@ -1,7 +1,7 @@
 """REXS files: the drafted scene has the numbers of the gear program, and asks for what that does not say."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import cos, pi, radians, tan
 from pathlib import Path
@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 
 from tol3d.apps.drafting.rexs import gearbox_scene_from, is_rexs
 from tol3d.apps.drafting.rexs import scene as rexs_scene
-from tol3d.apps.drafting.rexs.container import LARGEST_TEXT, read_document
+from tol3d.apps.drafting.rexs.container import LARGEST_TEXT, MOST_MEMBERS, read_document
 from tol3d.apps.drafting.rexs.gearbox import Gearbox
 from tol3d.apps.drafting.rexs.reading import gearbox_of
 from tol3d.apps.drafting.rexs.scene import gearbox_draft
@@ -56,14 +56,14 @@ def refusal(content: Rexs | FileContent) -> str:
     return str(caught.value)
 
 
-def extremes(simulation: Simulation, measure: str, *, varied: Callable[[str], bool]) -> list[float]:
-    """Values of a measure by 3D with all contributors that vary at their upper, and at their lower limits."""
+def extremes(simulation: Simulation, measure: str, varied: Mapping[str, int]) -> list[float]:
+    """Values of a measure by 3D, contributors at one limit (1: upper) and all at the other; those not named at 0."""
     system = simulation.system
-    slices, ends = component_slices(system), np.zeros((2, max(own.stop for own in component_slices(system).values())))
-    for contributor in system.contributors:
-        if varied(contributor.name):
-            law = contributor.distribution
-            ends[0, slices[contributor.name]], ends[1, slices[contributor.name]] = law.high, law.low
+    slices = component_slices(system)
+    ends = np.zeros((2, max(own.stop for own in slices.values())))
+    for name, sign in varied.items():
+        law = next(own.distribution for own in system.contributors if own.name == name)
+        ends[0, slices[name]], ends[1, slices[name]] = (law.high, law.low) if sign > 0 else (law.low, law.high)
     method = system.method("exact", system.materials("exact"))
     answers = method.answers(stated(system, ends), system.measures)
     return [float(own) for own in np.ravel(answers.values[measure])]
@@ -102,15 +102,13 @@ def test_a_spur_stage_is_drafted_with_its_numbers() -> None:
 
 
 def test_backlash_of_a_drafted_spur_stage_has_the_limits_of_its_series_and_field() -> None:
-    """Oracle: j = (|E1| + |E2|) cos 20° + 2 a cos α_w (inv α_w - inv α_w0), by hand: see the digits."""
+    """Oracle: j = (|E1| + |E2|) cos 20° + 2 a cos α_w (inv α_w - inv α_w0), worked out by hand [µm]."""
     simulation = simulated(scene_of(read_file(SPUR_STAGE))[0])
-    at_nominal = extremes(simulation, "stage normal backlash", varied=lambda name: "thickness" in name)
+    teeth = {"pinion tooth thickness": 1, "wheel tooth thickness": 1}
+    at_nominal = extremes(simulation, "stage normal backlash", teeth)
     assert [1e3 * own for own in at_nominal] == pytest.approx([142.449, 208.227], abs=6e-4)
-    moved = {"pinion tooth thickness", "wheel tooth thickness", "stage centre distance"}
-    least = extremes(simulation, "stage normal backlash", varied=lambda name: name in moved)
-    del least
-    law = {own.name: own.distribution for own in simulation.system.contributors}
-    assert (law["stage centre distance"].low, law["stage centre distance"].high) == pytest.approx((-0.015, 0.015))
+    over_all = extremes(simulation, "stage normal backlash", teeth | {"stage centre distance": -1})
+    assert [1e3 * own for own in over_all] == pytest.approx([131.244, 219.448], abs=6e-4)
 
 
 def test_the_lines_to_fill_in_are_scenes_as_they_stand() -> None:
@@ -225,8 +223,9 @@ def test_a_planetary_stage_is_one_set_with_one_contributor_a_pin() -> None:
     to_arcsec = 180.0 * 3600.0 / pi
     expected = [370 / 156_000 * to_arcsec, 540 / 156_000 * to_arcsec]  # 8′09.2″ and 11′54.0″
     assert expected == pytest.approx([489.2, 714.0], abs=0.05)
-    for varied in (lambda name: "pins" not in name, lambda name: True):
-        values = [own * to_arcsec for own in extremes(simulation, "lost motion", varied=varied)]
+    teeth = dict.fromkeys((f"{own} tooth thickness" for own in ("sun", "planet wheel", "ring")), 1)
+    for varied in (teeth, teeth | {"set planet pins": 1}, teeth | {"set planet pins": -1}):
+        values = [own * to_arcsec for own in extremes(simulation, "lost motion", varied)]
         assert values == pytest.approx(expected, abs=0.1)
 
 
@@ -356,6 +355,14 @@ def spoilt(edit: Callable[[bytes], bytes]) -> FileContent:
     return FileContent(Path("box.rexs"), edit(pair().xml()))
 
 
+def pair_on_a_planet() -> Rexs:
+    rexs = planetary()
+    writer = Writer("1.1", dict(rexs.components), list(rexs.relations))
+    first = writer.gear("first", writer.shaft("motor", (0.0, 0.0, 138.0)), 30, 2.0, 0.0)
+    writer.stage("before", first, writer.gear("second", 16, 30, 2.0, 0.0, start=60.0), 60.0)
+    return writer.rexs()
+
+
 BAD = {
     "modules": (
         pair().having(8, normal_module=(2.5, "mm")),
@@ -462,6 +469,122 @@ BAD = {
         FileContent(Path("box.rexsz"), b"PK\x03\x04" + b"x" * 50),
         "box.rexsz: expected a zip that can be ",
     ),
+    "many in a zip": (
+        FileContent(Path("box.rexsz"), zipped({f"{k}.png": b"" for k in range(MOST_MEMBERS + 1)})),
+        "box.rexsz: expected at most 1000 files in the zip, got 1001",
+    ),
+    "no whole number": (
+        pair().having(5, number_of_teeth=(23.5, "none")),
+        "box.rexs: cylindrical_gear 5 'pinion': number_of_teeth: expected a whole number, got 23.5",
+    ),
+    "no teeth": (
+        pair().having(5, number_of_teeth=(-23, "none")),
+        "box.rexs: cylindrical_gear 5 'pinion': number_of_teeth: expected a number above 0, got -23",
+    ),
+    "no module": (
+        pair().having(5, normal_module=(0.0, "mm")),
+        "box.rexs: cylindrical_gear 5 'pinion': expected a module and a pressure angle above 0, and angles below 69",
+    ),
+    "words": (
+        pair().having(5, normal_module=("two", "mm")),
+        "box.rexs: cylindrical_gear 5 'pinion': normal_module: expected a number, got 'two'",
+    ),
+    "two numbers": (
+        pair().having(5, normal_module=((2.0, 2.0), "mm")),
+        "box.rexs: cylindrical_gear 5 'pinion': normal_module: expected one value, got 2",
+    ),
+    "plane": (
+        pair().having(3, support_vector=((0.0, 1.0), "mm")),
+        "box.rexs: shaft 3 'in': support_vector: expected 3 numbers, got 2",
+    ),
+    "pressure angles": (
+        pair().having(6, normal_pressure_angle=(25.0, "deg")).having(7, normal_pressure_angle=(25.0, "deg")),
+        "box.rexs: cylindrical_stage 11: expected gears of one normal_pressure_angle, got two",
+    ),
+    "two rings": (
+        pair().typed(5, "ring_gear").typed(8, "ring_gear"),
+        "box.rexs: cylindrical_stage 11: expected at most one ring_gear, got two",
+    ),
+    "no gear": (
+        pair().typed(5, "worm_gear"),
+        "box.rexs: worm_gear 5 'pinion': expected a cylindrical_gear or ring_gear in a cylindrical_stage",
+    ),
+    "one gear": (
+        replace(pair(), relations=[*pair().relations[:-3], ("stage", {"stage": 11, "gear_1": 5, "gear_2": 5})]),
+        "box.rexs: cylindrical_stage 11 'mesh': expected two gears, got cylindrical_gear 5 'pinion' twice",
+    ),
+    "no distance": (
+        pair().having(11, center_distance=(0.0, "mm")),
+        "box.rexs: cylindrical_stage 11 'mesh': center_distance: expected one above 0, got 0",
+    ),
+    "two shafts": (
+        pair().related("assembly", assembly=4, part=5),
+        "box.rexs: cylindrical_gear 5 'pinion': expected it on one shaft, got 3 and 4",
+    ),
+    "position of nothing": (
+        pair().having(3, reference_component_for_position=(99, "none")),
+        "box.rexs: shaft 3 'in': reference_component_for_position: expected a component of the file, got the id 99, "
+        "which it does not have",
+    ),
+    "no axis": (
+        pair().having(3, u_axis_vector=((0.0, 0.0, 0.0), "mm")),
+        "box.rexs: shaft 3 'in': expected u and w axes with a length, got none",
+    ),
+    "skew axes": (
+        pair().having(3, w_axis_vector=((0.1, 0.0, 1.0), "mm")),
+        "box.rexs: shaft 3 'in': expected a w axis square to the u axis, got another",
+    ),
+    "crossed shafts": (
+        pair().having(4, u_axis_vector=((0.0, 1.0, 0.0), "mm")),
+        "box.rexs: cylindrical_stage 11: expected shafts with parallel u axes, got others",
+    ),
+    "no planets": (
+        replace(planetary(), relations=[own for own in planetary().relations if own[0] != "planet_shaft"]),
+        "box.rexs: planetary_stage 6 'set': expected planet_shaft, planet_carrier_shaft and cylindrical stages, got",
+    ),
+    "planets in mesh": (
+        planetary().related("planet_shaft", planetary_stage=6, shaft=3),
+        "box.rexs: cylindrical_stage 20: expected one gear of a planet, the other central, got 2",
+    ),
+    "a planet without meshes": (
+        planetary().related("planet_shaft", planetary_stage=6, shaft=5),
+        "box.rexs: planetary_stage 6 'set': expected the meshes of 4 planets, got those of 3",
+    ),
+    "no common distance": (
+        planetary(1).having(21, center_distance=(78.1, "mm")),
+        "box.rexs: planetary_stage 6 'set': expected one center_distance of all meshes, got 78 and 78.1 mm",
+    ),
+    "one central gear": (
+        replace(planetary(), relations=[own for own in planetary().relations if 12 not in own[1].values()]),
+        "box.rexs: planetary_stage 6 'set': expected a sun and a ring, or two rings, got one central gear",
+    ),
+    "a planet with other meshes": (
+        pair_on_a_planet(),
+        "box.rexs: planetary_stage 6 'set': expected gears of planets that mesh in it alone, got others",
+    ),
+    "two held": (
+        planetary().related("side", assembly=8, inner_part=3, outer_part=2),
+        "box.rexs: planetary_stage 6 'set': expected one shaft coupled to the casing, got 2",
+    ),
+    "bytes": (FileContent(Path("box.rexsj"), b'{"model": "\xff"}'), "box.rexsj: byte 11: expected JSON in UTF-8"),
+    "no json": (FileContent(Path("box.rexsj"), b'{"model": \n5'), "box.rexsj: line 2: expected JSON, got: "),
+    "json list": (
+        FileContent(Path("box.rexsj"), b'{"model": {"version": "1.7", "components": {"a": 1}}}'),
+        'box.rexsj: expected a list of components, got {"a": 1}',
+    ),
+    "infinite": (FileContent(Path("box.rexsj"), b'{"model": NaN}'), "box.rexsj: expected numbers, got NaN"),
+    "id": (
+        spoilt(lambda own: own.replace(b'component id="2"', b'component id="two"')),
+        "box.rexs: id of a component: expected a whole number, got 'two'",
+    ),
+    "attribute twice": (
+        spoilt(lambda own: own.replace(b'id="normal_module"', b'id="number_of_teeth"', 1)),
+        "box.rexs: component 5: expected each attribute once, got number_of_teeth twice",
+    ),
+    "json attribute twice": (
+        FileContent(Path("box.rexsj"), pair().json().replace(b'"normal_module"', b'"number_of_teeth"', 1)),
+        "box.rexsj: component 5: expected each attribute once, got number_of_teeth twice",
+    ),
     "empty": (FileContent(Path("box.rexs"), b""), "box.rexs: line 1: expected XML, got: no element found"),
 }
 
@@ -494,6 +617,249 @@ def test_spoilt_limits_and_unknown_stages_are_named_and_the_rest_is_drafted() ->
         ]
         assert all(own.removeprefix("left out: ") in text for own in left)
         assert "  # pinion tooth thickness: " in text
+
+
+SERIES = "tooth_thickness_deviation_tolerance_series_din_3967_1978"
+NAMED = {
+    "one limit": (
+        pair().having(11, lower_center_distance_allowance=(5.0, "mum")),
+        "cylindrical_stage 11 'mesh': expected lower_center_distance_allowance and upper_center_distance_allowance, "
+        "got one of them",
+    ),
+    "limits the other way round": (
+        pair().having(13, minimum_radial_bearing_clearance=(25.0, "mum")),
+        "rolling_bearing_with_catalog_geometry 13 'rear': minimum_radial_bearing_clearance: expected at most "
+        "maximum_radial_bearing_clearance, got 0.025 mm and 0.02 mm",
+    ),
+    "preload": (
+        pair().having(12, radial_clearance=(-3.0, "mum")),
+        "concept_bearing 12 'front': radial_clearance: expected a clearance above 0, got -0.003 mm, a preload",
+    ),
+    "field": (
+        pair().having(11, center_distance_tolerance_field_din_3964_1980=("h7", "none")),
+        "cylindrical_stage 11 'mesh': center_distance_tolerance_field_din_3964_1980: expected 5 to 11, got 'h7'",
+    ),
+    "two names": (
+        pair().having(5, din_3967_deviation_tolerance_series=("h25", "none")),
+        f"cylindrical_gear 5 'pinion': expected one value, got two of {SERIES} and its old name "
+        "din_3967_deviation_tolerance_series",
+    ),
+    "tip diameter": (
+        pair().having(5, tip_diameter=(1.0, "mm")),
+        "cylindrical_gear 5 'pinion': tip_diameter: expected one above the reference diameter 46 mm, got 1 mm",
+    ),
+    "pins without diameter": (
+        pair().having(
+            5,
+            lower_backlash_allowance_balls_or_pins=(-0.2, "mm"),
+            upper_backlash_allowance_balls_or_pins=(-0.1, "mm"),
+        ),
+        "cylindrical_gear 5 'pinion': …_backlash_allowance_balls_or_pins: not read without "
+        "diameter_of_measuring_ball_or_pin",
+    ),
+    "ring": (
+        planetary().having(
+            12,
+            lower_backlash_allowance_referenced_to_span=(50.0, "mum"),
+            upper_backlash_allowance_referenced_to_span=(90.0, "mum"),
+        ),
+        "ring_gear 12 'ring': …_backlash_allowance_referenced_to_span: not read of a ring, whose sign is not told",
+    ),
+    "run-out": (
+        pair().having(5, runout_tolerance=(20.0, "mum")),
+        "cylindrical_gear 5 'pinion': runout_tolerance: not read",
+    ),
+    "classes of a set": (
+        planetary().having(9, tolerance_class_according_to_iso_1328_2013=("6", "none")),
+        "sun: class 6 of ISO 1328-1: single teeth of planetary sets do not deviate",
+    ),
+    "shafts apart": (
+        pair().having(4, support_vector=((5.0, 0.0, 60.5), "mm")),
+        "cylindrical_stage 11: its shafts lie 60.5 mm apart; center_distance 60.6 mm is drafted",
+    ),
+    "bearing in a shaft": (
+        pair().related("side", assembly=14, inner_part=3, outer_part=4),
+        "1 bearing (needle) between parts that turn: not drafted",
+    ),
+    "third bearing": (
+        pair().related("side", assembly=14, inner_part=3, outer_part=2),
+        "1 bearing (needle) on a shaft of a planetary stage or without gears, without a place, or a third one: not "
+        "drafted",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_limits_that_cannot_be_read_are_named(name: str) -> None:
+    rexs, expected = NAMED[name]
+    if len(rexs.components) == 13:
+        rexs = replace(rexs, components={**rexs.components, 14: ("concept_bearing", "needle", {})})
+    drafted = gearbox_draft(rexs.file())
+    assert f"left out: {expected}" in list(drafted.notes())
+    assert f"#   {expected}" in drafted.scene()[0]
+
+
+def test_many_lines_are_left_to_the_scene() -> None:
+    rexs = pair()
+    more: dict[int, tuple[str, str, Attributes]] = {100 + k: (f"spline_{k:02}", "", {}) for k in range(15)}
+    drafted = gearbox_draft(replace(rexs, components={**rexs.components, **more}).file())
+    assert list(drafted.notes())[-1] == "left out: 3 more, see the end of the scene"
+    assert "spline_14 114: not drafted" in drafted.scene()[0]
+
+
+def test_a_spoilt_letter_of_a_name_changes_no_line() -> None:
+    hostile = ("a: b", "# x", "on", "é\u2028x", "x" * 300, "[1]", "*z", "1e3", "a.b/c", "pinion", "pinion", '"', "")
+    wanted = yaml.safe_load(gearbox_draft(pair().file()).scene()[0])
+    rexs = pair()
+    names = dict(zip(rexs.components, hostile, strict=True))
+    named = {number: (kind, names[number], own) for number, (kind, _, own) in rexs.components.items()}
+    _, read = scene_of(replace(rexs, components=named))
+    for section in ("parts", "tolerances", "moves", "measures"):
+        assert [own["kind"] for own in read[section].values()] == [own["kind"] for own in wanted[section].values()]
+
+
+def test_tips_and_flank_classes_are_those_of_the_file() -> None:
+    """Addendum (d_a - d)/(2 m) - x: (51.6 - 46)/4 - 0.2 = 1.2; a coarser class of the pitch counts."""
+    rexs = pair().having(
+        5,
+        tip_diameter=(51.6, "mm"),
+        global_tolerance_class_iso_1328_2013=("6", "none"),
+        single_pitch_tolerance_class_iso_1328_2013=("7", "none"),
+        cumulative_pitch_tolerance_class_iso_1328_2013=("8", "none"),
+    )
+    _, read = scene_of(rexs)
+    assert read["parts"]["pinion"]["addendum"] == 1.2
+    classes = {own["kind"]: own["limits"]["iso_class"] for own in read["tolerances"].values() if "limits" in own}
+    assert classes == {"pitch_deviation": 8, "profile_slope": 6, "helix_slope": 6}
+
+
+def test_the_gear_that_drives_is_that_of_the_file_else_the_smaller_one() -> None:
+    rexs = pair()
+    assert yaml.safe_load(gearbox_draft(rexs.file()).scene()[0])["moves"]["mesh"]["driver"] == "pinion"
+    data = {14: ("stage_gear_data", "", {"is_driving_gear": (True, "none")})}
+    driven = replace(rexs, components={**rexs.components, **data}).related(
+        "stage_gear_data", stage=11, gear=8, stage_gear_data=14
+    )
+    moves = yaml.safe_load(gearbox_draft(driven.file()).scene()[0])["moves"]
+    assert (moves["mesh"]["driver"], moves["train to in"]["driven"]) == ("wheel", "out")
+    assert moves["mesh"]["azimuth"] == "180 deg"
+
+
+@pytest.mark.parametrize(("first", "expected"), [(5, "-30 deg"), (8, "150 deg")])
+def test_without_positions_stages_say_where_their_gears_lie(first: int, expected: str) -> None:
+    """The angle is counted about -u, and from gear 1 to gear 2; the pinion drives."""
+    relations = [own for own in pair().relations if own[0] != "stage"]
+    rexs = replace(pair(), relations=relations).related("stage", stage=11, gear_1=first, gear_2=13 - first)
+    rexs = rexs.having(4, support_vector=None).having(11, rotating_angle_around_neg_u_axis=(30.0, "deg"))
+    assert yaml.safe_load(gearbox_draft(rexs.file()).scene()[0])["moves"]["mesh"]["azimuth"] == expected
+
+
+def rexs_frame(at: tuple[float, float, float]) -> dict[str, tuple[tuple[float, float, float], str]]:
+    return {"support_vector": (at, "mm"), "u_axis_vector": ((0.0, 1.0, 0.0), "mm")}
+
+
+def test_positions_may_refer_to_each_other_and_leave_out_w() -> None:
+    """The second shaft stands in the frame of the first, which is turned and moved."""
+    rexs = pair().having(1, **rexs_frame((1.0, 2.0, 3.0)), reference_component_for_position=(1, "none"))
+    rexs = rexs.having(3, support_vector=((7.0, 8.0, 9.0), "mm"), w_axis_vector=((0.0, 1.0, 0.0), "mm"))
+    at = ((0.0, 60.6, 0.0), "mm")
+    rexs = rexs.having(4, reference_component_for_position=(3, "none"), support_vector=at, w_axis_vector=None)
+    drafted = gearbox_draft(rexs.file())
+    assert drafted.remarks == []
+    assert yaml.safe_load(drafted.scene()[0])["moves"]["mesh"]["azimuth"] == "-90 deg"  # v is clockwise of w
+
+
+def test_a_chain_of_couplings_makes_one_shaft() -> None:
+    """The wheel's shaft goes on 100 mm further, with a second pinion there; a disengaged coupling joins nothing."""
+    for engaged in (True, False):
+        writer = Writer()
+        shafts = [writer.shaft(str(k), at) for k, at in enumerate([(0.0, 0.0, 0.0), (0.0, 0.0, 45.0)])]
+        shafts += [writer.shaft("2", (100.0, 0.0, 45.0)), writer.shaft("3", (100.0, 0.0, 95.0))]
+        teeth = ((0, 20, 1.5), (1, 40, 1.5), (2, 18, 2.0), (3, 32, 2.0))
+        gears = [writer.gear("abcd"[k], shafts[k], z, module, 0.0, series="d25") for k, z, module in teeth]
+        writer.stage("first", gears[0], gears[1], 45.0)
+        writer.stage("second", gears[2], gears[3], 50.0)
+        coupling = writer.add("switchable_coupling", is_engaged=(engaged, "none"))
+        writer.relate("side", assembly=coupling, inner_part=shafts[1], outer_part=shafts[2])
+        _, read = scene_of(writer.rexs())
+        trains = [(own["driven"], own["output"]) for own in read["moves"].values() if own["kind"] == "train"]
+        assert trains == ([("0", "3")] if engaged else [("0", "1"), ("2", "3")])
+        if engaged:
+            assert read["parts"]["1"]["carries"] == {"b": {"at": "27.5 mm"}, "c": {"at": "127.5 mm"}}
+
+
+def test_a_ring_that_drives_or_is_driven_has_its_teeth_where_the_file_has_them() -> None:
+    """The ring's axis lies 20 mm along w from the pinion's: teeth meet on the other side of the pinion."""
+    writer = Writer()
+    first, second = writer.shaft("in", (0.0, 0.0, 0.0)), writer.shaft("rim", (0.0, 0.0, 20.0))
+    pinion = writer.gear("pinion", first, 20, 2.0, 0.1, series="d25")
+    ring = writer.gear("ring", second, 40, 2.0, -0.1, ring=True, series="d25")
+    stage = writer.stage("mesh", pinion, ring, 20.0)
+    _, read = scene_of(writer.rexs().having(ring, tip_diameter=(76.8, "mm")))
+    assert read["parts"]["ring"]["addendum"] == 0.9  # (80 - 76.8)/4 + 0.1
+    assert read["moves"]["mesh"]["azimuth"] == "180 deg"
+    assert read["parts"]["ring"]["kind"] == "internal_gear"
+    data = writer.add("stage_gear_data", is_driving_gear=(True, "none"))
+    writer.relate("stage_gear_data", stage=stage, gear=ring, stage_gear_data=data)
+    _, read = scene_of(writer.rexs().having(ring, tip_diameter=(76.8, "mm")))
+    assert read["moves"]["mesh"]["driver"] == "ring"
+    assert read["moves"]["mesh"]["azimuth"] == "180 deg"
+
+
+def test_pins_of_planets_have_allowances_or_are_asked_for() -> None:
+    none = {"center_distance_tolerance_field_din_3964_1980": None}
+    rexs = planetary()
+    for number, own in planetary().components.items():
+        rexs = rexs.having(number, **none) if own[0] == "cylindrical_stage" else rexs
+    text = gearbox_draft(rexs.file()).scene()[0]
+    assert (
+        "  # set planet pins: {kind: planet_pin, of: carrier, direction: radial, distribution: {fit: js7, of: 78"
+        in text
+    )
+    for number, own in planetary().components.items():
+        if own[0] == "cylindrical_stage":
+            rexs = rexs.having(
+                number,
+                lower_center_distance_allowance=(-4.0, "mum"),
+                upper_center_distance_allowance=(9.0, "mum"),
+            )
+    assert scene_of(rexs)[1]["tolerances"]["set planet pins"]["distribution"] == ["-4 um", "9 um"]
+
+
+def test_a_set_that_nothing_holds_has_its_ring_held_as_a_guess() -> None:
+    rexs = planetary().having(8, is_engaged=(False, "none"))
+    text = gearbox_draft(rexs.file()).scene()[0]
+    assert "    held: ring  # guess: no coupling to the casing says it" in text
+
+
+def test_a_held_carrier_and_loads_decide_what_drives() -> None:
+    """The coupling holds the carrier instead of the ring: the sun drives the ring."""
+    rexs = planetary()
+    relations = [
+        own if own[0] != "side" else ("side", {"assembly": 8, "inner_part": 5, "outer_part": 2})
+        for own in rexs.relations
+    ]
+    move = yaml.safe_load(gearbox_draft(replace(rexs, relations=relations).file()).scene()[0])["moves"]["set"]
+    assert (move["held"], move["input"], move["output"]) == ("carrier", "sun", "ring")
+
+
+def test_two_shifts_that_the_file_does_not_say_are_0_and_what_is_left() -> None:
+    rexs = pair()
+    for side in (6, 7, 9, 10):
+        rexs = rexs.having(side, addendum_modification_coefficient=None)
+    (stage,) = gearbox(rexs.having(11, center_distance=(60.8, "mm"))).stages
+    assert stage.first.profile_shift == 0.0
+    assert stage.second.profile_shift == pytest.approx(stage.tight_shift, abs=1e-6)
+
+
+def test_axes_nearer_than_base_circles_have_no_backlash_to_tell() -> None:
+    (stage,) = gearbox(pair().having(11, center_distance=(50.0, "mm"))).stages
+    assert (stage.working_angle, stage.tight_shift, stage.normal_backlash) == (None, None, None)
+
+
+def test_backlash_that_the_program_worked_out_stands_beside_ours() -> None:
+    rexs = pair().having(11, minimum_normal_backlash=(100.0, "mum"), maximum_normal_backlash=(0.2, "mm"))
+    assert "# the file's program has 100 um to 200 um" in gearbox_draft(rexs.file()).scene()[0]
 
 
 def test_planets_that_differ_are_refused() -> None:

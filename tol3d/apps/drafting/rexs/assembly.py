@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.apps.drafting.entry import Entry, Wording
-from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, PlanetarySet, Shaft, Stage
+from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, PlanetarySet, Shaft, Stage, counted
 from tol3d.apps.drafting.rexs.kinematics import CARRIER, Drive, Link, Mounting
 from tol3d.apps.drafting.rexs.limits import um
 from tol3d.apps.drafting.rexs.named import Named
-from tol3d.apps.drafting.words import Names, comment, length, number, scalar
+from tol3d.apps.drafting.words import comment, length, number, scalar
 
 GUESSED_WIDTH: Final = 10.0  # modules, of faces whose width no file says
 MOST_BEARINGS: Final = 2  # of a shaft: by a third it would be bent
@@ -20,8 +20,9 @@ DIGITS: Final = 6  # of factors and degrees, as gear programs print them
 
 
 def degrees(angle: float) -> str:
-    """An angle [rad] in degrees."""
-    return f"{number(round(math.degrees(angle), DIGITS))} deg"
+    """An angle [rad] in degrees, of half a turn the positive one."""
+    value = round(math.degrees(angle), DIGITS)
+    return f"{number(180.0 if value == -180.0 else value)} deg"
 
 
 def chosen_bearings(gearbox: Gearbox, names: Named) -> tuple[list[Bearing], list[str]]:
@@ -33,19 +34,14 @@ def chosen_bearings(gearbox: Gearbox, names: Named) -> tuple[list[Bearing], list
         if not any(gear.id in in_sets for gear in shaft.gears)
         and not any(own.carrier.ids == shaft.ids for own in gearbox.sets)
     ]
-    chosen, lines, others = list[Bearing](), list[str](), list[Bearing]()
+    chosen = list[Bearing]()
     for shaft in free:
         own = [each for each in gearbox.bearings if each.shaft in shaft.ids and each.at is not None]
         own.sort(key=lambda each: each.clearance is None)  # in the file's order
         chosen += own[:MOST_BEARINGS]
-    for bearing in gearbox.bearings:
-        if bearing not in chosen:
-            others.append(bearing)
-    if others:
-        told = ", ".join(comment(own.name or str(own.id)) for own in others[:3])
-        why = "of shafts of planetary stages or without gears, without a place, or a third one"
-        lines.append(f"{len(others)} bearings ({told}{', …' if others[3:] else ''}): {why}")
-    return chosen, lines
+    others = [own.name or str(own.id) for own in gearbox.bearings if own not in chosen]
+    why = "on a shaft of a planetary stage or without gears, without a place, or a third one"
+    return chosen, [f"{counted(others)} {why}: not drafted"] if others else []
 
 
 def parts(
@@ -91,8 +87,6 @@ def _shaft(shaft: Shaft, gearbox: Gearbox, names: Named, places: Mounting) -> st
     sense = places.senses.get(shaft.ids[0], 1)
     carried = []
     for gear in shaft.gears:
-        if gear.id not in names.names:
-            continue
         middle = sense * (shaft.offsets[gear.id] + (gear.start or 0.0) + _width(gear) / 2.0)
         carried.append(f"{scalar(names.of(gear))}: {'{}' if gear.start is None else f'{{at: {length(middle)}}}'}")
     carried += [f"{scalar(names.carriers[own.id])}: {{}}" for own in gearbox.sets if own.carrier.ids == shaft.ids]
@@ -123,20 +117,6 @@ def _gear(gear: Gear, less: float) -> str:
     return "{" + ", ".join(f"{key}: {own}" for key, own in fields.items()) + "}"
 
 
-def moves(drives: Sequence[tuple[Drive, Mounting]], gearbox: Gearbox, names: Named) -> Iterator[Entry]:
-    """Meshes and planetary stages from the driven shaft on, and a train to each output."""
-    for drive, places in drives:
-        for link in drive.links:
-            cause = link.cause
-            if isinstance(cause, Stage):
-                yield _mesh(cause, link, places.azimuths, names)
-            else:
-                yield _set(cause, link, names)
-    for train in trains(drives, gearbox, names):
-        line = f"{{kind: train, driven: {scalar(train.driven)}, output: {scalar(train.output)}}}"
-        yield Entry("moves", scalar(train.name), [Wording((line,))])
-
-
 @dataclass(frozen=True)
 class Train:
     """A train of a drive.
@@ -151,15 +131,28 @@ class Train:
     output: str
 
 
-def trains(drives: Sequence[tuple[Drive, Mounting]], gearbox: Gearbox, names: Named) -> Iterator[Train]:
+def trains_of(drives: Sequence[tuple[Drive, Mounting]], gearbox: Gearbox, names: Named) -> Iterator[Train]:
     """A train to each output; a planetary stage alone has none, since its own move says its input and output."""
-    titles = Names(taken=dict.fromkeys(names.names.values(), 1))
     for drive, _ in () if _is_set_alone(gearbox) else drives:
         for end in drive.outputs:
             start, last = drive.links[0], next(own for own in reversed(drive.links) if own.end == end)
             driven = names.part(drive.root, start.driver, start.cause)
             output = names.part(end, last.driven, last.cause)
-            yield Train(titles.new(f"train to {output}", "train"), driven, output)
+            yield Train(names.titles.new(f"train to {output}", "train"), driven, output)
+
+
+def moves(drives: Sequence[tuple[Drive, Mounting]], trains: Sequence[Train], names: Named) -> Iterator[Entry]:
+    """Meshes and planetary stages from the driven shaft on, and a train to each output."""
+    for drive, places in drives:
+        for link in drive.links:
+            cause = link.cause
+            if isinstance(cause, Stage):
+                yield _mesh(cause, link, places.azimuths, names)
+            else:
+                yield _set(cause, link, names)
+    for train in trains:
+        line = f"{{kind: train, driven: {scalar(train.driven)}, output: {scalar(train.output)}}}"
+        yield Entry("moves", scalar(train.name), [Wording((line,))])
 
 
 def _is_set_alone(gearbox: Gearbox) -> bool:
@@ -203,20 +196,19 @@ def _set(own: PlanetarySet, link: Link, names: Named) -> Entry:
     return Entry("moves", scalar(names.of(own)), [Wording(lines, f"planetary_stage {own.id}")])
 
 
-def measures(drives: Sequence[tuple[Drive, Mounting]], gearbox: Gearbox, names: Named) -> Iterator[Entry]:
+def measures(gearbox: Gearbox, trains: Sequence[Train], names: Named) -> Iterator[Entry]:
     """Normal backlash of each mesh, and the lost motion at each output."""
-    titles = Names()
     for stage in gearbox.stages:
         line = f"{{kind: normal_backlash, of: {scalar(names.of(stage))}}}"
         low, high = (None, None) if stage.backlash is None else stage.backlash
         told = "" if low is None or high is None else f"the file's program has {um(low)} to {um(high)}"
-        title = titles.new(f"{names.of(stage)} normal backlash", "normal backlash")
+        title = names.titles.new(f"{names.of(stage)} normal backlash", "normal backlash")
         yield Entry("measures", scalar(title), [Wording((line,), told)])
     if _is_set_alone(gearbox):
-        name = scalar(titles.new("lost motion", "lost motion"))
+        name = scalar(names.titles.new("lost motion", "lost motion"))
         line = f"{{kind: planetary_lost_motion, of: {scalar(names.of(gearbox.sets[0]))}}}"
         yield Entry("measures", name, [Wording((line,))])
         return
-    for train in trains(drives, gearbox, names):
-        title = titles.new(f"lost motion of {train.output}", "lost motion")
+    for train in trains:
+        title = names.titles.new(f"lost motion of {train.output}", "lost motion")
         yield Entry("measures", scalar(title), [Wording((f"{{kind: lost_motion, of: {scalar(train.name)}}}",))])

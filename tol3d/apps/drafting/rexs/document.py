@@ -154,7 +154,8 @@ class Component:
             return None
         known, attribute = found
         if len(attribute.values) != 3:
-            self._unspoilt(known, attribute)
+            if not attribute.is_array:
+                self._unspoilt(known, attribute)
             raise RexsError(f"{self}: {known}: expected 3 numbers, got {len(attribute.values)}")
         factor = self._factor(known, attribute.unit, kind)
         x, y, z = (self._finite(known, each) * factor for each in attribute.values)

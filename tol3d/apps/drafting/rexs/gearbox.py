@@ -3,8 +3,13 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from tol3d.numerics.arrays import Array
+
+MOST_NAMED: Final = 3  # parts of one kind in a line
+COPY: Final = " @ "
+"""Parts a name from the place of a copy, where a program repeats what each planet has."""
 
 
 @dataclass(frozen=True)
@@ -186,6 +191,26 @@ class Stage:
     def _transverse_angle(self) -> float:
         """tan α_t = tan α_n / cos β."""
         return math.atan(math.tan(self.first.pressure_angle) / math.cos(self.first.helix_angle))
+
+
+def base_name(name: str) -> str:
+    """A name without the place of a copy.
+
+    >>> base_name("planet wheel @ 0.0° @ 240.0°")
+    'planet wheel'
+    """
+    return name.partition(COPY)[0]
+
+
+def counted(bearings: Sequence[str]) -> str:
+    """A number of bearings with the first of their names.
+
+    >>> counted(["a @ 0.0°", "a @ 120.0°"]), counted(["a"])
+    ('2 bearings (a)', '1 bearing (a)')
+    """
+    names = list(dict.fromkeys(map(base_name, bearings)))
+    told = ", ".join(names[:MOST_NAMED]) + (", …" if names[MOST_NAMED:] else "")
+    return f"{len(bearings)} bearing{'s' if len(bearings) > 1 else ''} ({told})"
 
 
 def involute(angle: float) -> float:

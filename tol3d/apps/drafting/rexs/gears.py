@@ -143,7 +143,7 @@ def limits_of(component: Component, lower: str, upper: str) -> tuple[float, floa
     if low is None and high is None:
         return None
     if low is None or high is None:
-        raise RexsError(f"{component}: {upper if low is None else lower}: expected {lower} and {upper}, got one")
+        raise RexsError(f"{component}: expected {lower} and {upper}, got one of them")
     if low > high:
         raise RexsError(f"{component}: {lower}: expected at most {upper}, got {length(low)} and {length(high)}")
     return low, high

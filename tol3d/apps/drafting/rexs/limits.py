@@ -6,7 +6,7 @@ from typing import Final
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, PlanetarySet, Stage
 from tol3d.apps.drafting.rexs.named import Named
-from tol3d.apps.drafting.words import Names, comment, length, number, scalar
+from tol3d.apps.drafting.words import comment, length, number, scalar
 
 USUAL_SERIES: Final = "cd25"
 USUAL_GRADE: Final = 7
@@ -42,31 +42,30 @@ def tolerances(gearbox: Gearbox, names: Named, bearings: Sequence[Bearing]) -> I
         names: of its parts.
         bearings: those that are parts of the scene.
     """
-    titles = Names()
     meshing = list({gear.id: gear for stage in gearbox.stages for gear in stage.gears}.values())
     of_sets = list({gear.id: gear for own in gearbox.sets for mesh in own.meshes for gear in mesh}.values())
     gears = list({gear.id: gear for gear in (*meshing, *of_sets)}.values())
     usual = next((gear.series for gear in gears if gear.series), USUAL_SERIES)
     for gear in gears:
-        yield _thickness(gear, names, titles, usual)
+        yield _thickness(gear, names, usual)
     for stage in gearbox.stages:
-        yield _centre_distance(stage, names, titles)
+        yield _centre_distance(stage, names)
     for own in gearbox.sets:
-        yield _pins(own, names, titles)
+        yield _pins(own, names)
     for gear in meshing:
-        yield from _single_teeth(gear, names, titles)
+        yield from _single_teeth(gear, names)
     for bearing in bearings:
-        yield _clearance(bearing, names, titles)
+        yield _clearance(bearing, names)
 
 
 def _entry(name: str, words: Sequence[Wording], label: str, blank: bool = False) -> Entry:
     return Entry("tolerances", scalar(name), words, label=label, blank=blank)
 
 
-def _thickness(gear: Gear, names: Named, titles: Names, usual: str) -> Entry:
+def _thickness(gear: Gear, names: Named, usual: str) -> Entry:
     """Tooth thickness by the series, else by numbers, else to fill in."""
     of = scalar(names.of(gear))
-    title = titles.new(f"{names.of(gear)} tooth thickness", "tooth thickness")
+    title = names.titles.new(f"{names.of(gear)} tooth thickness", "tooth thickness")
     label = f"{'ring_gear' if gear.internal else 'cylindrical_gear'} {gear.id}: tooth thickness"
     words = list[Wording]()
     if gear.series:
@@ -83,8 +82,8 @@ def _thickness(gear: Gear, names: Named, titles: Names, usual: str) -> Entry:
     return _entry(title, [Wording((line,), f"{ASKED}{LETTERS}")], label, blank=True)
 
 
-def _centre_distance(stage: Stage, names: Named, titles: Names) -> Entry:
-    title = titles.new(f"{names.of(stage)} centre distance", "centre distance")
+def _centre_distance(stage: Stage, names: Named) -> Entry:
+    title = names.titles.new(f"{names.of(stage)} centre distance", "centre distance")
     start = f"{{kind: centre_distance, of: {scalar(names.of(stage))}, distribution: "
     label = f"cylindrical_stage {stage.id}: centre distance"
     words = list[Wording]()
@@ -99,10 +98,10 @@ def _centre_distance(stage: Stage, names: Named, titles: Names) -> Entry:
     return _entry(title, [Wording((f"{start}{{din_3964: js{USUAL_GRADE}}}}}",), f"{ASKED}{FIELDS}")], label, blank=True)
 
 
-def _pins(own: PlanetarySet, names: Named, titles: Names) -> Entry:
+def _pins(own: PlanetarySet, names: Named) -> Entry:
     """One contributor a pin: off its radius it opens the mesh with the sun as it closes that with the ring."""
     stage = next((each for each in own.stages if each.field or each.allowance), own.stages[0])
-    title = titles.new(f"{names.of(own)} planet pins", "planet pins")
+    title = names.titles.new(f"{names.of(own)} planet pins", "planet pins")
     distance = length(stage.centre_distance)
     start = f"{{kind: planet_pin, of: {scalar(names.carriers[own.id])}, direction: radial, distribution: "
     label = f"planetary_stage {own.id}: planet pins"
@@ -117,11 +116,11 @@ def _pins(own: PlanetarySet, names: Named, titles: Names) -> Entry:
     return _entry(title, [Wording((line,), f"{ASKED}{FIELDS} of the centre distance; {meshes}")], label, blank=True)
 
 
-def _single_teeth(gear: Gear, names: Named, titles: Names) -> Iterator[Entry]:
+def _single_teeth(gear: Gear, names: Named) -> Iterator[Entry]:
     """Deviations of single teeth by their classes; without any, a line for the pitch to fill in."""
     classes = gear.classes or {"pitch_deviation": USUAL_CLASS}
     for kind, grade in classes.items():
-        title = titles.new(f"{names.of(gear)} {CLASS_WORDS[kind]}", CLASS_WORDS[kind])
+        title = names.titles.new(f"{names.of(gear)} {CLASS_WORDS[kind]}", CLASS_WORDS[kind])
         line = (
             f"{{kind: {kind}, of: {scalar(names.of(gear))}, flanks: each, limits: {{iso_class: {grade}}}, "
             f"{CLASS_LAWS[kind]}}}"
@@ -131,9 +130,9 @@ def _single_teeth(gear: Gear, names: Named, titles: Names) -> Iterator[Entry]:
         yield _entry(title, [Wording((line,), told)], label, blank=not gear.classes)
 
 
-def _clearance(bearing: Bearing, names: Named, titles: Names) -> Entry:
+def _clearance(bearing: Bearing, names: Named) -> Entry:
     """Clearance in any direction, since the file says nothing of the force on the shaft."""
-    title = titles.new(f"{names.of(bearing.id)} clearance", "clearance")
+    title = names.titles.new(f"{names.of(bearing.id)} clearance", "clearance")
     label = f"bearing {bearing.id}: clearance"
     start = f"{{kind: bearing_clearance, of: {scalar(names.of(bearing.id))}, direction: random, distribution: "
     if bearing.clearance is None:

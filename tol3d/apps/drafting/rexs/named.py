@@ -4,12 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from tol3d.apps.drafting.rexs.gearbox import Gear, Gearbox, PlanetarySet, Shaft, Stage
+from tol3d.apps.drafting.rexs.gearbox import Gear, Gearbox, PlanetarySet, Shaft, Stage, base_name
 from tol3d.apps.drafting.rexs.kinematics import CARRIER
 from tol3d.apps.drafting.words import Names
 
-COPY: Final = " @ "
-"""Parts a name from the place of a copy, where a program repeats the gears of a planet."""
+LONGEST: Final = 36  # characters, with which a tolerance's name has room for its kind
 
 
 @dataclass(frozen=True)
@@ -20,12 +19,14 @@ class Named:
         shafts: those that are parts of the scene: with gears of meshes that are in no planetary stage.
         names: by the ids of components, of a shaft that of its first one.
         planets, carriers: by the ids of planetary stages.
+        titles: further names of the scene, which differ from these.
     """
 
     shafts: Sequence[Shaft]
     names: Mapping[int, str]
     planets: Mapping[int, str]
     carriers: Mapping[int, str]
+    titles: Names
 
     def of(self, own: Gear | Stage | PlanetarySet | int) -> str:
         """The name of a component."""
@@ -54,6 +55,7 @@ def named(gearbox: Gearbox) -> Named:
     names, found = Names(), dict[int, str]()
     for number, wish, fallback in wishes:
         if number not in found:
-            found[number] = names.new(wish.partition(COPY)[0], f"{fallback} {number}")
+            found[number] = names.new(base_name(wish)[:LONGEST], f"{fallback} {number}")
     planets = {own.id: names.new("planet", "planet") for own in gearbox.sets}
-    return Named(shafts, found, planets, {own.id: names.new("carrier", "carrier") for own in gearbox.sets})
+    carriers = {own.id: names.new("carrier", "carrier") for own in gearbox.sets}
+    return Named(shafts, found, planets, carriers, names)

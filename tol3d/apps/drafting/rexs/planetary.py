@@ -39,6 +39,8 @@ def planetary_set(
             )
         planet = on_planets[0]
         own.setdefault(turning[planet.id].ids[0], []).append((mesh.mate(planet), planet, mesh))
+    if {*turning} != {planet.id for each in own.values() for _, planet, _ in each}:
+        raise RexsError(f"{stage}: expected gears of planets that mesh in it alone, got others")
     first = next(iter(own.values()))
     wanted = sorted(map(_likeness, first))
     for planet_shaft, each in own.items():
@@ -52,6 +54,8 @@ def planetary_set(
     low, high = min(distances), max(distances)
     if high - low > SAME_DISTANCE:
         raise RexsError(f"{stage}: expected one center_distance of all meshes, got {low:g} and {high:g} mm")
+    if len({central.id for central, _, _ in first}) < 2:
+        raise RexsError(f"{stage}: expected a sun and a ring, or two rings, got one central gear")
     held, guessed = _held(stage, [central for central, _, _ in first], carrier, shafts)
     return PlanetarySet(
         id=stage.id,

@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Final
 
 from tol3d.apps.drafting.rexs.document import Component, Document, LeftOut, Relation, RexsError
-from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, Stage
+from tol3d.apps.drafting.rexs.gearbox import MOST_NAMED, Bearing, Gear, Gearbox, Stage, counted
 from tol3d.apps.drafting.rexs.gears import gear_of, limits_of, require_mates
 from tol3d.apps.drafting.rexs.places import HOUSINGS, shafts_of
 from tol3d.apps.drafting.rexs.planetary import planetary_set
@@ -39,7 +39,6 @@ CLEARANCES: Final = (
 )
 GRADES: Final = range(5, 12)  # of DIN 3964
 DIGITS_OF_SHIFT: Final = 6  # as gear programs print x
-MOST_NAMED: Final = 3  # components of one type
 
 
 def gearbox_of(document: Document) -> Gearbox:
@@ -192,8 +191,7 @@ def _bearings(document: Document, left: LeftOut) -> Iterator[Bearing]:
         clearance, source = left.spared(_clearance, bearing) or (None, "")
         yield Bearing(bearing.id, bearing.name, shaft.id, at, clearance, source)
     if between:
-        names = ", ".join(between[:MOST_NAMED])
-        left.lines.append(f"{len(between)} bearings between parts that turn ({names}{' …' if between[3:] else ''})")
+        left.lines.append(f"{counted(between)} between parts that turn: not drafted")
 
 
 def _clearance(bearing: Component) -> tuple[tuple[float, float] | None, str]:

@@ -7,7 +7,7 @@ from typing import Final, get_args
 
 from tol3d.apps.drafting.draft import LONGEST, TRIALS, settled
 from tol3d.apps.drafting.entry import Entry, Scene
-from tol3d.apps.drafting.rexs.assembly import chosen_bearings, measures, moves, nominal, parts
+from tol3d.apps.drafting.rexs.assembly import chosen_bearings, measures, moves, nominal, parts, trains_of
 from tol3d.apps.drafting.rexs.container import read_document
 from tol3d.apps.drafting.rexs.document import RexsError
 from tol3d.apps.drafting.rexs.gearbox import Gearbox, Stage
@@ -130,11 +130,12 @@ def gearbox_draft(content: FileContent) -> GearboxDraft:
     names = named(gearbox)
     bearings, others = chosen_bearings(gearbox, names)
     mounted = [(drive, mounting(drive, gearbox)) for drive in drives(gearbox)]
+    trains = list(trains_of(mounted, gearbox, names))
     entries = [
         *parts(gearbox, names, _all_places(mounted), bearings, _rounding(stages)),
         *tolerances(gearbox, names, bearings),
-        *moves(mounted, gearbox, names),
-        *measures(mounted, gearbox, names),
+        *moves(mounted, trains, names),
+        *measures(gearbox, trains, names),
     ]
     remarks = [*gearbox.left_out, *others, *_unsaid(gearbox, names), *(own for _, at in mounted for own in at.remarks)]
     return GearboxDraft(content.path.name, gearbox, entries, remarks)
