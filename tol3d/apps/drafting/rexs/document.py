@@ -47,6 +47,10 @@ class RexsError(InputError):
     """A REXS file is damaged, too large, or states what no gearbox is; exit code 2."""
 
 
+class SpoiltError(RexsError):
+    """A value is lost: some programs write `false` for every text and array."""
+
+
 @dataclass(frozen=True)
 class Attribute:
     """An attribute as it is written.
@@ -164,7 +168,7 @@ class Component:
     def _unspoilt(self, known: str, attribute: Attribute) -> str:
         written = attribute.values[0].strip() if len(attribute.values) == 1 else ""
         if written.lower() == SPOILT:
-            raise RexsError(f"{self}: {known}: expected a value, got {SPOILT!r}; the program that wrote it lost it")
+            raise SpoiltError(f"{self}: {known}: expected a value, got {SPOILT!r}; the program that wrote it lost it")
         if attribute.is_array or not written:
             raise RexsError(f"{self}: {known}: expected one value, got {len(attribute.values)}")
         return written

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.apps.drafting.rexs.document import Component, Document, RexsError
+from tol3d.apps.drafting.rexs.document import Component, Document, LeftOut, RexsError, SpoiltError
 from tol3d.apps.drafting.rexs.gearbox import Gear, Shaft
 from tol3d.numerics.arrays import Array
 
@@ -62,11 +62,16 @@ def _any_square(along: Array) -> Array:
     return np.asarray(np.cross(np.cross(along, start), along))
 
 
-def shafts_of(document: Document, gears: Mapping[int, Gear]) -> list[Shaft]:
+def shafts_of(document: Document, gears: Mapping[int, Gear], left: LeftOut) -> list[Shaft]:
     """Shafts that carry gears or a carrier, in the order of the file; those that couplings join are one.
 
+    Args:
+        document: their text.
+        gears: by id.
+        left: takes positions that are lost.
+
     Raises:
-        RexsError: a gear is on two shafts.
+        RexsError: a gear is on two shafts, or a position cannot be.
     """
     group = _joined(document)
     carried: dict[int, int] = {}
@@ -86,13 +91,14 @@ def shafts_of(document: Document, gears: Mapping[int, Gear]) -> list[Shaft]:
         for own in document.of_type.get("assembly", ())
         if document.components[own.one("part")].type == "external_load" and own.one("assembly") in group
     }
+    poses = {own: _pose_unless_lost(document.components[own], document, left) for ids in heads.values() for own in ids}
     return [
         Shaft(
             ids,
             document.components[ids[0]].name,
-            pose_of(document, document.components[ids[0]]),
+            poses[ids[0]],
             [gears[own] for own, on in carried.items() if on in ids],
-            _offsets(document, ids, carried),
+            _offsets({own: poses[own] for own in ids}, carried),
             head in held,
             head in loaded,
         )
@@ -141,10 +147,17 @@ def _held(document: Document, group: Mapping[int, int]) -> Iterator[int]:
             yield group[outer.id if inner.type in HOUSINGS else inner.id]
 
 
-def _offsets(document: Document, ids: list[int], carried: Mapping[int, int]) -> dict[int, float]:
+def _pose_unless_lost(component: Component, document: Document, left: LeftOut) -> Array | None:
+    try:
+        return pose_of(document, component)
+    except SpoiltError as error:
+        left.lines.append(str(error))
+        return None
+
+
+def _offsets(poses: Mapping[int, Array | None], carried: Mapping[int, int]) -> dict[int, float]:
     """Start of each shaft of those that are joined, also of that of each gear, along the first one's u [mm]."""
-    poses = {own: pose_of(document, document.components[own]) for own in ids}
-    first = poses[ids[0]]
+    first = next(iter(poses.values()))
     along = {
         own: 0.0 if pose is None or first is None else float((pose - first)[:3, 3] @ first[:3, 0])
         for own, pose in poses.items()

@@ -57,7 +57,7 @@ def gearbox_of(document: Document) -> Gearbox:
     for stage in stages:
         require_mates(stage)
     stages = with_shifts(stages)
-    shafts = shafts_of(document, {gear.id: gear for stage in stages for gear in stage.gears})
+    shafts = shafts_of(document, {gear.id: gear for stage in stages for gear in stage.gears}, left)
     in_set = {
         own.one("part"): own.one("assembly")
         for own in document.of_type.get("assembly", ())
@@ -135,7 +135,7 @@ def _field(stage: Component) -> int | None:
     written = stage.text(name)
     if written is None:
         return None
-    number = written.lower().removeprefix("js")
+    number = written.lower().removeprefix("js").removesuffix(".0")  # as programs write it that know floats alone
     if not number.isdecimal() or int(number) not in GRADES:
         raise RexsError(f"{stage}: {name}: expected 5 to 11, got {shown(written)!r}")
     return int(number)
