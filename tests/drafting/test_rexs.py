@@ -17,6 +17,7 @@ from scipy.optimize import brentq
 from tol3d.apps.drafting.rexs import gearbox_scene_from, is_rexs
 from tol3d.apps.drafting.rexs import scene as rexs_scene
 from tol3d.apps.drafting.rexs.container import LARGEST_TEXT, MOST_MEMBERS, read_document
+from tol3d.apps.drafting.rexs.document import MOST_COMPONENTS
 from tol3d.apps.drafting.rexs.gearbox import Gearbox
 from tol3d.apps.drafting.rexs.reading import gearbox_of
 from tol3d.apps.drafting.rexs.scene import gearbox_draft
@@ -190,6 +191,14 @@ def test_allowances_are_read_in_the_words_of_the_file() -> None:
     assert tolerances["front clearance"]["distribution"] == {"kind": "constant", "value": "12 um"}
 
 
+def test_a_class_of_clearance_is_told_beside_the_line_to_fill_in() -> None:
+    limits = dict.fromkeys(("minimum_radial_bearing_clearance", "maximum_radial_bearing_clearance"))
+    text = gearbox_draft(pair().having(13, **limits, radial_clearance_class=("C3", "none")).file()).scene()[0]
+    assert re.search(
+        r"  # rear clearance: .*# to fill in: limits of the radial clearance, class C3$", text, re.MULTILINE
+    )
+
+
 def test_a_chord_is_taken_as_an_arc_and_a_series_goes_before_numbers() -> None:
     numbers = {
         "chordal_tooth_thickness_lower_deviation": (-0.12, "mm"),
@@ -205,12 +214,28 @@ def test_a_chord_is_taken_as_an_arc_and_a_series_goes_before_numbers() -> None:
 
 
 def test_a_letter_that_a_diameter_has_no_value_for_is_left_out_by_name() -> None:
+    hostile = "zz25\n  x: [y # z"
+    rexs = (
+        pair()
+        .having(11, center_distance=(60.8, "mm"))
+        .having(8, tooth_thickness_deviation_tolerance_series_din_3967_1978=None)
+    )
+    rexs = rexs.having(5, tooth_thickness_deviation_tolerance_series_din_3967_1978=(hostile, "none"))
+    assert "wheel tooth thickness: {kind" in scene_of(rexs)[0]
     text, drafted = gearbox_scene_from(
         pair().having(5, tooth_thickness_deviation_tolerance_series_din_3967_1978=("zz25", "none")).file()
     )
     assert "pinion tooth thickness" not in yaml.safe_load(text)["tolerances"]
     (line,) = (own for own in drafted.notes() if "zz25" in own)
     assert line.startswith("left out: cylindrical_gear 5: tooth thickness: ")
+
+
+def test_a_scene_that_interferes_without_a_series_names_it() -> None:
+    lost = {"tooth_thickness_deviation_tolerance_series_din_3967_1978": ("zz25", "none")}
+    told = refusal(pair().having(5, **lost).having(8, **lost))
+    assert "moves.mesh: the teeth interfere at the mean build: " in told
+    assert told.count("; left out: cylindrical_gear ") == 2
+    assert "'zz25'" in told
 
 
 def test_a_planetary_stage_is_one_set_with_one_contributor_a_pin() -> None:
@@ -476,6 +501,14 @@ BAD = {
     "many in a zip": (
         FileContent(Path("box.rexsz"), zipped({f"{k}.png": b"" for k in range(MOST_MEMBERS + 1)})),
         "box.rexsz: expected at most 1000 files in the zip, got 1001",
+    ),
+    "many stages": (
+        replace(pair(), relations=[*pair().relations, *[("stage", {"stage": 11, "gear_1": 5, "gear_2": 8})] * 200]),
+        "box.rexs: expected at most 200 cylindrical stages, got 201",
+    ),
+    "many relations": (
+        replace(pair(), relations=[("x", {})] * (2 * MOST_COMPONENTS + 1)),
+        "box.rexs: expected at most 50000 components and twice as many relations, got 13 and 100001",
     ),
     "no whole number": (
         pair().having(5, number_of_teeth=(23.5, "none")),

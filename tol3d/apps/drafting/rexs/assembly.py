@@ -25,21 +25,21 @@ def degrees(angle: float) -> str:
     return f"{number(180.0 if value == -180.0 else value)} deg"
 
 
-def chosen_bearings(gearbox: Gearbox, names: Named) -> tuple[list[Bearing], list[str]]:
-    """Bearings that are parts of the scene, and lines on the others."""
+def chosen_bearings(gearbox: Gearbox, shafts: Sequence[Shaft]) -> tuple[list[Bearing], list[str]]:
+    """Bearings that are parts of the scene, of its shafts, and a line on the others."""
     in_sets = {gear.id for own in gearbox.sets for mesh in own.meshes for gear in mesh}
-    free = [
-        shaft
-        for shaft in names.shafts
-        if not any(gear.id in in_sets for gear in shaft.gears)
-        and not any(own.carrier.ids == shaft.ids for own in gearbox.sets)
-    ]
+    carriers = {own.carrier.ids[0] for own in gearbox.sets}
+    on_shaft: dict[int, list[Bearing]] = {}
+    for bearing in gearbox.bearings:
+        if bearing.at is not None:
+            on_shaft.setdefault(bearing.shaft, []).append(bearing)
     chosen = list[Bearing]()
-    for shaft in free:
-        own = [each for each in gearbox.bearings if each.shaft in shaft.ids and each.at is not None]
-        own.sort(key=lambda each: each.clearance is None)  # in the file's order
-        chosen += own[:MOST_BEARINGS]
-    others = [own.name or str(own.id) for own in gearbox.bearings if own not in chosen]
+    for shaft in shafts:
+        if shaft.ids[0] not in carriers and not any(gear.id in in_sets for gear in shaft.gears):
+            own = [bearing for each in shaft.ids for bearing in on_shaft.get(each, ())]
+            chosen += sorted(own, key=lambda bearing: bearing.clearance is None)[:MOST_BEARINGS]
+    ids = {own.id for own in chosen}
+    others = [own.name or str(own.id) for own in gearbox.bearings if own.id not in ids]
     why = "on a shaft of a planetary stage or without gears, without a place, or a third one"
     return chosen, [f"{counted(others)} {why}: not drafted"] if others else []
 

@@ -39,6 +39,7 @@ OTHER_TYPES: Final = {
 }
 """Types of components in other versions, with the newest name of each."""
 
+MOST_COMPONENTS: Final = 50_000  # of a gearbox that a scene can be of; and as many relations twice
 SPOILT: Final = "false"
 MOST_SHOWN: Final = 6  # components of a ring of references
 
@@ -239,6 +240,9 @@ class Document:
         """
         if not self.version.startswith(VERSIONS):
             raise RexsError(f"expected REXS 1.0 to 2.0, got version {shown(self.version)!r}")
+        if len(self.components) > MOST_COMPONENTS or len(self.relations) > 2 * MOST_COMPONENTS:
+            counts = f"{len(self.components)} and {len(self.relations)}"
+            raise RexsError(f"expected at most {MOST_COMPONENTS} components and twice as many relations, got {counts}")
         by_type: dict[str, list[Relation]] = {}
         for relation in self.relations:
             by_type.setdefault(relation.type, []).append(relation)

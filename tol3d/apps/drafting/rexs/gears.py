@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
-from tol3d.apps.drafting.rexs.document import Component, Document, LeftOut, RexsError
+from tol3d.apps.drafting.rexs.document import Component, Document, LeftOut, Relation, RexsError
 from tol3d.apps.drafting.rexs.gearbox import Allowance, Gear, Stage
 from tol3d.apps.drafting.words import length
 
@@ -27,8 +27,14 @@ SAME_SHIFT: Final = 1e-9
 STEEPEST: Final = 1.2  # rad, 69 deg; of helices, and more than any pressure angle
 
 
-def gear_of(document: Document, gear: Component, left: LeftOut) -> Gear:
+def gear_of(document: Document, gear: Component, flanks: Relation | None, left: LeftOut) -> Gear:
     """A gear with its flanks and the limits of its teeth.
+
+    Args:
+        document: that it is of.
+        gear: its component.
+        flanks: the relation with its flanks; without one the gear states what they do.
+        left: takes what cannot be read.
 
     Raises:
         RexsError: teeth, module or flanks are missing, or none that a gear has.
@@ -37,7 +43,7 @@ def gear_of(document: Document, gear: Component, left: LeftOut) -> Gear:
     if teeth is None or teeth < 1:
         raise RexsError(f"{gear}: number_of_teeth: expected a number above 0, got {'none' if teeth is None else teeth}")
     module = gear.needed("normal_module", "length")
-    pressure_angle, shift = _flanks(document, gear, left)
+    pressure_angle, shift = _flanks(document, gear, flanks, left)
     helix = gear.number("helix_angle_reference_diameter", "angle") or 0.0
     if not (module > 0.0 and 0.0 < pressure_angle < STEEPEST and abs(helix) < STEEPEST):
         raise RexsError(f"{gear}: expected a module and a pressure angle above 0, and angles below 69 deg")
@@ -65,10 +71,9 @@ def gear_of(document: Document, gear: Component, left: LeftOut) -> Gear:
     return replace(read, tip_diameter=left.spared(_tip_diameter, gear, read))
 
 
-def _flanks(document: Document, gear: Component, left: LeftOut) -> tuple[float, float | None]:
+def _flanks(document: Document, gear: Component, flanks: Relation | None, left: LeftOut) -> tuple[float, float | None]:
     """Pressure angle and profile shift, which both flanks have alike."""
-    relation = next((own for own in document.of_type.get("flank", ()) if own.one("gear") == gear.id), None)
-    sides = [] if relation is None else [document.components[relation.one(side)] for side in ("left", "right")]
+    sides = [] if flanks is None else [document.components[flanks.one(side)] for side in ("left", "right")]
     states = sides or [gear]
     angles = [own.needed("normal_pressure_angle", "angle") for own in states]
     shifts = [left.spared(own.number, "addendum_modification_coefficient") for own in states]

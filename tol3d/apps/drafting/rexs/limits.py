@@ -78,7 +78,7 @@ def _thickness(gear: Gear, names: Named, usual: str) -> Entry:
         words.append(Wording((line,), f"gear {gear.id}: {own.source}", lost))
     if words:
         return _entry(title, words, label)
-    line = f"{{kind: tooth_thickness, of: {of}, distribution: {{din_3967: {usual}}}}}"
+    line = f"{{kind: tooth_thickness, of: {of}, distribution: {{din_3967: {scalar(usual)}}}}}"
     return _entry(title, [Wording((line,), f"{ASKED}{LETTERS}")], label, blank=True)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from tol3d.apps.drafting.rexs.gearbox import Gear, Gearbox, PlanetarySet, Shaft, Stage, base_name
+from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, PlanetarySet, Shaft, Stage, base_name
 from tol3d.apps.drafting.rexs.kinematics import CARRIER
 from tol3d.apps.drafting.words import Names
 
@@ -39,15 +39,19 @@ class Named:
         return self.carriers[cause.id] if member == CARRIER else self.names[member]
 
 
-def named(gearbox: Gearbox) -> Named:
-    """Names for a gearbox, near those in its file."""
+def scene_shafts(gearbox: Gearbox) -> list[Shaft]:
+    """Shafts that are parts of a scene."""
     meshing = {gear.id for stage in gearbox.stages for gear in stage.gears}
-    shafts = [shaft for shaft in gearbox.shafts if any(gear.id in meshing for gear in shaft.gears)]
+    return [shaft for shaft in gearbox.shafts if any(gear.id in meshing for gear in shaft.gears)]
+
+
+def named(gearbox: Gearbox, shafts: Sequence[Shaft], bearings: Sequence[Bearing]) -> Named:
+    """Names for shafts and bearings that are parts of the scene, and for gears, stages and sets, near the file's."""
     gears = [gear for stage in gearbox.stages for gear in stage.gears]
     gears += [gear for own in gearbox.sets for mesh in own.meshes for gear in mesh]
     wishes = [
         *((shaft.ids[0], shaft.name, "shaft") for shaft in shafts),
-        *((own.id, own.name, "bearing") for own in gearbox.bearings),
+        *((own.id, own.name, "bearing") for own in bearings),
         *((gear.id, gear.name, "gear") for gear in gears),
         *((own.id, own.name, "stage") for own in gearbox.stages),
         *((own.id, own.name, "planetary stage") for own in gearbox.sets),

@@ -1,6 +1,6 @@
 """Positions of a REXS text's components, and its shafts: what couplings join turns as one."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -92,13 +92,16 @@ def shafts_of(document: Document, gears: Mapping[int, Gear], left: LeftOut) -> l
         if document.components[own.one("part")].type == "external_load" and own.one("assembly") in group
     }
     poses = {own: _pose_unless_lost(document.components[own], document, left) for ids in heads.values() for own in ids}
+    on_shaft: dict[int, list[int]] = {}
+    for gear, shaft in carried.items():
+        on_shaft.setdefault(shaft, []).append(gear)
     return [
         Shaft(
             ids,
             document.components[ids[0]].name,
             poses[ids[0]],
-            [gears[own] for own, on in carried.items() if on in ids],
-            _offsets({own: poses[own] for own in ids}, carried),
+            [gears[own] for each in ids for own in on_shaft.get(each, ())],
+            _offsets({own: poses[own] for own in ids}, on_shaft),
             head in held,
             head in loaded,
         )
@@ -116,28 +119,35 @@ def _couplings(document: Document) -> Iterator[tuple[Component, Component]]:
 
 def _joined(document: Document) -> dict[int, int]:
     """The first component of those that turn with each component: couplings join them, and a carrier its parts."""
-    group = {own: own for own in document.components}
+    parent = {own: own for own in document.components}
+
+    def head(component: int) -> int:
+        while parent[component] != component:
+            parent[component] = parent[parent[component]]
+            component = parent[component]
+        return component
 
     def join(first: int, second: int) -> None:
-        low, high = sorted((group[first], group[second]))
-        if low != high:
-            for each, head in group.items():
-                group[each] = low if head == high else head
+        low, high = sorted((head(first), head(second)))
+        parent[high] = low
 
     for inner, outer in _couplings(document):
         if not {inner.type, outer.type} & {*HOUSINGS}:
             join(inner.id, outer.id)
-    planets = {own.one("shaft") for own in document.of_type.get("planet_shaft", ())}
+    on_planets = {
+        own.one("shaft") for kind in ("planet_shaft", "planet_pin") for own in document.of_type.get(kind, ())
+    }  # a pin turns with the carrier only where a coupling joins them
+    carriers: dict[int, int] = {}
     for relation in document.of_type.get("assembly", ()):
-        carrier, part = relation.one("assembly"), relation.one("part")
-        if document.components[carrier].type == "planet_carrier" and part not in planets:
-            join(carrier, part)
+        whole, part = relation.one("assembly"), relation.one("part")
+        if document.components[whole].type == "planet_carrier" and part not in on_planets:
+            join(whole, part)
+        if document.components[part].type == "planet_carrier":
+            carriers[whole] = part
     for own in document.of_type.get("planet_carrier_shaft", ()):
-        for relation in document.of_type.get("assembly", ()):
-            held = document.components[relation.one("part")]
-            if held.type == "planet_carrier" and relation.one("assembly") == own.one("planetary_stage"):
-                join(held.id, own.one("shaft"))
-    return group
+        if own.one("planetary_stage") in carriers:
+            join(carriers[own.one("planetary_stage")], own.one("shaft"))
+    return {own: head(own) for own in document.components}
 
 
 def _held(document: Document, group: Mapping[int, int]) -> Iterator[int]:
@@ -155,11 +165,11 @@ def _pose_unless_lost(component: Component, document: Document, left: LeftOut) -
         return None
 
 
-def _offsets(poses: Mapping[int, Array | None], carried: Mapping[int, int]) -> dict[int, float]:
+def _offsets(poses: Mapping[int, Array | None], on_shaft: Mapping[int, Sequence[int]]) -> dict[int, float]:
     """Start of each shaft of those that are joined, also of that of each gear, along the first one's u [mm]."""
     first = next(iter(poses.values()))
     along = {
         own: 0.0 if pose is None or first is None else float((pose - first)[:3, 3] @ first[:3, 0])
         for own, pose in poses.items()
     }
-    return along | {gear: along[shaft] for gear, shaft in carried.items() if shaft in along}
+    return along | {gear: at for shaft, at in along.items() for gear in on_shaft.get(shaft, ())}

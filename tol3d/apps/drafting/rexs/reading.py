@@ -37,6 +37,7 @@ CLEARANCES: Final = (
     "radial_bearing_clearance",
     "radial_clearance",
 )
+MOST_STAGES: Final = 200  # of one scene that a person reads
 GRADES: Final = range(5, 12)  # of DIN 3964
 DIGITS_OF_SHIFT: Final = 6  # as gear programs print x
 
@@ -48,8 +49,10 @@ def gearbox_of(document: Document) -> Gearbox:
         RexsError: it has no cylindrical stage, or one that cannot be.
     """
     left = LeftOut()
-    gears = {own.id: gear_of(document, own, left) for own in _gears(document)}
-    stages = [_stage(document, relation, gears, left) for relation in _stages(document)]
+    flanks = {own.one("gear"): own for own in reversed(document.of_type.get("flank", ()))}
+    gears = {own.id: gear_of(document, own, flanks.get(own.id), left) for own in _gears(document)}
+    driving = _driving(document)
+    stages = [_stage(document, relation, gears, driving, left) for relation in _stages(document)]
     others = list(_others(document))
     if not stages:
         raise RexsError(f"expected a cylindrical or planetary stage, got {', '.join(others) or 'none'}")
@@ -71,10 +74,17 @@ def gearbox_of(document: Document) -> Gearbox:
     return Gearbox([own for own in stages if own.id not in in_set], sets, shafts, bearings, left.lines)
 
 
-def _stages(document: Document) -> Iterator[Relation]:
-    for relation in document.of_type.get("stage", ()):
-        if document.components[relation.one("stage")].type == "cylindrical_stage":
-            yield relation
+def _stages(document: Document) -> list[Relation]:
+    """Relations of cylindrical stages with their gears.
+
+    Raises:
+        RexsError: there are more than a scene has.
+    """
+    relations = document.of_type.get("stage", ())
+    found = [own for own in relations if document.components[own.one("stage")].type == "cylindrical_stage"]
+    if len(found) > MOST_STAGES:
+        raise RexsError(f"expected at most {MOST_STAGES} cylindrical stages, got {len(found)}")
+    return found
 
 
 def _gears(document: Document) -> Iterator[Component]:
@@ -100,7 +110,9 @@ def _says_no_play(kind: str) -> bool:
     return not kind.endswith("_stage") and any(word in kind for word in NO_PLAY)
 
 
-def _stage(document: Document, relation: Relation, gears: dict[int, Gear], left: LeftOut) -> Stage:
+def _stage(
+    document: Document, relation: Relation, gears: dict[int, Gear], driving: dict[int, int], left: LeftOut
+) -> Stage:
     """A mesh.
 
     Raises:
@@ -124,7 +136,7 @@ def _stage(document: Document, relation: Relation, gears: dict[int, Gear], left:
         field=left.spared(_field, stage),
         allowance=left.spared(limits_of, stage, low, high),
         direction=None if turned is None else -turned,
-        driven_by=_driving(document, stage),
+        driven_by=driving.get(stage.id),
         backlash=left.spared(limits_of, stage, "minimum_normal_backlash", "maximum_normal_backlash"),
     )
 
@@ -141,13 +153,14 @@ def _field(stage: Component) -> int | None:
     return int(number)
 
 
-def _driving(document: Document, stage: Component) -> int | None:
-    """The gear that drives a stage, as the file's loads have it."""
-    for relation in document.of_type.get("stage_gear_data", ()):
-        data = document.components[relation.one("stage_gear_data")]
-        if relation.one("stage") == stage.id and data.flag("is_driving_gear"):
-            return relation.one("gear")
-    return None
+def _driving(document: Document) -> dict[int, int]:
+    """The gears that drive stages, as the file's loads have it."""
+    relations = document.of_type.get("stage_gear_data", ())
+    return {
+        own.one("stage"): own.one("gear")
+        for own in reversed(relations)
+        if document.components[own.one("stage_gear_data")].flag("is_driving_gear")
+    }
 
 
 def with_shifts(stages: Sequence[Stage]) -> list[Stage]:

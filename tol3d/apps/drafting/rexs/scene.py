@@ -13,7 +13,7 @@ from tol3d.apps.drafting.rexs.document import RexsError
 from tol3d.apps.drafting.rexs.gearbox import Gearbox, Stage
 from tol3d.apps.drafting.rexs.kinematics import Mounting, drives, mounting
 from tol3d.apps.drafting.rexs.limits import tolerances
-from tol3d.apps.drafting.rexs.named import Named, named
+from tol3d.apps.drafting.rexs.named import Named, named, scene_shafts
 from tol3d.apps.drafting.rexs.reading import gearbox_of
 from tol3d.apps.drafting.words import cleaned, comment, scalar
 from tol3d.cad.step import shown
@@ -106,13 +106,24 @@ def gearbox_scene_from(content: FileContent) -> tuple[str, GearboxDraft]:
     """
     try:
         drafted = gearbox_draft(content)
-        return settled(drafted, _check), drafted
+        return _settled(drafted), drafted
+    except InputError as error:
+        raise RexsError(f"{content.path}: {error}") from None
+
+
+def _settled(drafted: GearboxDraft) -> str:
+    """The text that a check accepts.
+
+    Raises:
+        RexsError: gears, moves or measures are refused; with the tolerances that were left out before.
+    """
+    try:
+        return settled(drafted, _check)
     except SceneError as error:
         problem = error.problems[0]
         place = f"{problem.path}: " if problem.path else ""
-        raise RexsError(f"{content.path}: its scene cannot be simulated: {place}{problem.sentence}") from None
-    except InputError as error:
-        raise RexsError(f"{content.path}: {error}") from None
+        lost = [f"; left out: {entry.label}: {entry.refused}" for entry in drafted.entries if entry.refused]
+        raise RexsError(f"its scene cannot be simulated: {place}{problem.sentence}{''.join(lost)}") from None
 
 
 def gearbox_draft(content: FileContent) -> GearboxDraft:
@@ -127,8 +138,9 @@ def gearbox_draft(content: FileContent) -> GearboxDraft:
     helical = next((gear for gear in gears if gear.helical), None)
     if helical is not None and not knows(HELICAL):
         raise RexsError(f"gear {helical.id}: expected straight teeth, got a helix; scenes have no helical gears yet")
-    names = named(gearbox)
-    bearings, others = chosen_bearings(gearbox, names)
+    shafts = scene_shafts(gearbox)
+    bearings, others = chosen_bearings(gearbox, shafts)
+    names = named(gearbox, shafts, bearings)
     mounted = [(drive, mounting(drive, gearbox)) for drive in drives(gearbox)]
     trains = list(trains_of(mounted, gearbox, names))
     entries = [
@@ -151,11 +163,12 @@ def _rounding(stages: Sequence[Stage]) -> dict[int, float]:
 
     Scenes whose nominal teeth interfere, by however little, are refused.
     """
-    return {
-        stage.second.id: sum(gear.profile_shift or 0.0 for gear in stage.gears) - (stage.tight_shift or 0.0)
-        for stage in stages
-        if -TIGHT < (stage.normal_backlash or 0.0) < 0.0 and not any(gear.stated for gear in stage.gears)
-    }
+    less = dict[int, float]()
+    for stage in stages:
+        excess = sum(gear.profile_shift or 0.0 for gear in stage.gears) - (stage.tight_shift or 0.0)
+        if -TIGHT < (stage.normal_backlash or 0.0) < 0.0 and not any(gear.stated for gear in stage.gears):
+            less[stage.second.id] = max(excess, less.get(stage.second.id, 0.0))
+    return less
 
 
 def _unsaid(gearbox: Gearbox, names: Named) -> Iterator[str]:
