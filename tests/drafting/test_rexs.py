@@ -191,6 +191,27 @@ def test_allowances_are_read_in_the_words_of_the_file() -> None:
     assert tolerances["front clearance"]["distribution"] == {"kind": "constant", "value": "12 um"}
 
 
+@pytest.mark.parametrize(
+    ("angle", "module"),
+    [((20.0, "°"), (2000.0, "mum")), ((pi / 9, "rad"), (2000.0, "um")), ((20.0, "deg"), (0.002, "m"))],
+)
+def test_units_are_those_of_the_file(angle: tuple[float, str], module: tuple[float, str]) -> None:
+    rexs = pair()
+    for side in (6, 7, 9, 10):
+        rexs = rexs.having(side, normal_pressure_angle=angle)
+    rexs = rexs.having(5, normal_module=module).having(8, normal_module=module)
+    assert gearbox_draft(rexs.file()).scene()[0] == gearbox_draft(pair().file()).scene()[0]
+
+
+def test_of_three_bearings_those_with_a_clearance_are_drafted() -> None:
+    rexs = pair().having(12, radial_clearance=None)
+    rexs = replace(rexs, components={**rexs.components, 14: ("concept_bearing", "needle", {
+        "u_coordinate_on_shaft_inner_side": (40.0, "mm"), "radial_clearance": (0.0, "mum"),
+    })}).related("side", assembly=14, inner_part=3, outer_part=2)  # fmt: skip
+    read = yaml.safe_load(gearbox_draft(rexs.file()).scene()[0])
+    assert [name for name, own in read["parts"].items() if own["kind"] == "bearing"] == ["rear", "needle"]
+
+
 def test_a_class_of_clearance_is_told_beside_the_line_to_fill_in() -> None:
     limits = dict.fromkeys(("minimum_radial_bearing_clearance", "maximum_radial_bearing_clearance"))
     text = gearbox_draft(pair().having(13, **limits, radial_clearance_class=("C3", "none")).file()).scene()[0]
@@ -303,6 +324,7 @@ def test_rounded_profile_shifts_that_interfere_are_drafted_without_backlash() ->
     text, drafted = gearbox_scene_from(rexs.file())
     assert 1e3 * (drafted.gearbox.stages[0].normal_backlash or 0.0) == pytest.approx(-0.004, abs=5e-4)
     assert "# gear 8; x 0.15 in the file, rounded: its teeth interfere" in text
+    assert 0.15 - 1e-5 < yaml.safe_load(text)["parts"]["wheel"]["profile_shift"] < 0.15
     (told,) = (own for own in drafted.notes() if "no backlash" in own)
     assert told == "cylindrical_stage 11 has no backlash without tolerances: normal backlash -0.004 um."
     thin = rexs.having(5, **{series: ("h25", "none")})
@@ -361,6 +383,24 @@ def test_shafts_lie_where_the_file_has_them() -> None:
     for name, at in zip(("0", "1", "2"), places, strict=True):
         seen = layout.world_from_shaft[name][:3, 3]
         assert seen[:2] == pytest.approx((along_w @ np.array(at))[:2], abs=1e-6)
+
+
+def test_two_load_paths_that_meet_again_have_one_output() -> None:
+    """A split-torque box: the pinion drives two lay shafts, both drive the gear in line with it."""
+    writer = Writer()
+    ends = [("in", 0.0), ("left", 60.0), ("right", -60.0), ("out", 0.0)]
+    first, left, right, last = (writer.shaft(name, (0.0, 0.0, at)) for name, at in ends)
+    sun = writer.gear("sun", first, 24, 1.5, 0.0, start=0.0, series="e25")
+    bull = writer.gear("bull", last, 41, 2.0, 0.0, start=40.0, series="e25")
+    for name, shaft in (("left", left), ("right", right)):
+        wheel = writer.gear(f"{name} wheel", shaft, 56, 1.5, 0.0, start=0.0, series="e25")
+        pinion = writer.gear(f"{name} pinion", shaft, 19, 2.0, 0.0, start=40.0, series="e25")
+        writer.stage(f"{name} fast", sun, wheel, 60.0)
+        writer.stage(f"{name} slow", pinion, bull, 60.0)
+    text, read = scene_of(writer.rexs())
+    trains = [own for own in read["moves"].values() if own["kind"] == "train"]
+    assert trains == [{"kind": "train", "driven": "in", "output": "out"}]
+    assert [own.name for own in simulated(text).system.measures][-1] == "lost motion of out"
 
 
 def test_a_set_behind_a_stage_is_one_train() -> None:
@@ -570,6 +610,15 @@ BAD = {
     "skew axes": (
         pair().having(3, w_axis_vector=((0.1, 0.0, 1.0), "mm")),
         "box.rexs: shaft 3 'in': expected a w axis square to the u axis, got another",
+    ),
+    "one shaft": (
+        replace(
+            pair(),
+            relations=[
+                (kind, {**own, "assembly": 3} if own.get("part") == 8 else own) for kind, own in pair().relations
+            ],
+        ),
+        "box.rexs: cylindrical_stage 11: expected gears on two shafts, got shafts that turn as one",
     ),
     "crossed shafts": (
         pair().having(4, u_axis_vector=((0.0, 1.0, 0.0), "mm")),

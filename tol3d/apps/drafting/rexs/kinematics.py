@@ -72,10 +72,16 @@ def drives(gearbox: Gearbox) -> Iterator[Drive]:
 
 
 def _mesh(stage: Stage, gearbox: Gearbox) -> Link:
-    """A mesh; the gear that the file says drives it, else the one of fewer teeth."""
+    """A mesh; the gear that the file says drives it, else the one of fewer teeth.
+
+    Raises:
+        RexsError: both gears turn as one.
+    """
     first, second = stage.gears
     drives_second = stage.driven_by == second.id or (stage.driven_by is None and second.teeth < first.teeth)
     link = Link(stage, first.id, second.id, turning(gearbox, first), turning(gearbox, second))
+    if link.start == link.end:
+        raise RexsError(f"cylindrical_stage {stage.id}: expected gears on two shafts, got shafts that turn as one")
     return link.turned if drives_second else link
 
 
@@ -105,8 +111,7 @@ def _drive(links: Sequence[Link]) -> Drive:
         ordered.append(link)
         reached += [link.end] if link.end not in reached else []
     driving = {own.start for own in ordered}
-    outputs = [part for part in reached if part not in driving] or [reached[-1]]
-    return Drive(ordered, root, outputs)
+    return Drive(ordered, root, [part for part in reached if part not in driving])
 
 
 @dataclass(frozen=True)

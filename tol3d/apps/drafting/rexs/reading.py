@@ -176,7 +176,7 @@ def with_shifts(stages: Sequence[Stage]) -> list[Stage]:
             for gear in stage.gears:
                 mate, tight = known[stage.mate(gear).id], stage.tight_shift
                 if known[gear.id].profile_shift is None and mate.profile_shift is not None and tight is not None:
-                    shift = round(tight - mate.profile_shift, DIGITS_OF_SHIFT) + 0.0
+                    shift = round(tight - mate.profile_shift, DIGITS_OF_SHIFT)
                     why = "not in the file; x without backlash at the centre distance"
                     derived.setdefault(gear.id, replace(known[gear.id], profile_shift=shift, shift_guess=why))
         if not derived:
