@@ -896,6 +896,35 @@ def test_a_ring_that_drives_or_is_driven_has_its_teeth_where_the_file_has_them()
     assert read["moves"]["mesh"]["azimuth"] == "180 deg"
 
 
+@pytest.mark.parametrize(("shifts", "distance"), [((0.2, 0.0), 30.97), ((0.3, -0.3), 31.2), ((-0.1, 0.25), 31.02)])
+def test_backlash_in_a_ring_is_that_of_the_gears_in_3d(shifts: tuple[float, float], distance: float) -> None:
+    writer = Writer()
+    first, second = writer.shaft("in", (0.0, 0.0, 0.0)), writer.shaft("rim", (0.0, 0.0, distance))
+    ring = writer.gear("ring", second, 70, 1.25, shifts[1], ring=True, series="d25")
+    writer.stage("mesh", writer.gear("pinion", first, 20, 1.25, shifts[0], series="d25"), ring, distance)
+    rexs = writer.rexs().having(ring, tip_diameter=(85.375 - 2.5 * shifts[1], "mm"))
+    (stage,) = gearbox(rexs).stages
+    simulation = simulated(scene_of(rexs)[0])
+    (nominal, _) = extremes(simulation, "mesh normal backlash", {})
+    assert stage.normal_backlash == pytest.approx(nominal, abs=1e-6)
+
+
+@pytest.mark.parametrize(("own", "fits"), [(12.0, True), (-12.0, False)])
+def test_a_helical_gear_and_its_ring_have_the_same_hand(own: float, fits: bool) -> None:
+    rexs = pair(helix=12.0).typed(8, "ring_gear").having(8, helix_angle_reference_diameter=(own, "deg"))
+    if fits:
+        assert gearbox(rexs).stages[0].first.helical
+    else:
+        assert refusal(rexs).endswith("helix_angle_reference_diameter: expected one angle with one sign, got others")
+
+
+def test_numbers_in_brackets_are_part_of_a_name() -> None:
+    rexs = pair()
+    kind, _, attributes = rexs.components[8]
+    named = replace(rexs, components={**rexs.components, 8: (kind, "Rad (grob [45])", attributes)})
+    assert "Rad (grob 45)" in scene_of(named)[1]["parts"]
+
+
 def test_pins_of_planets_have_allowances_or_are_asked_for() -> None:
     none = {"center_distance_tolerance_field_din_3964_1980": None}
     rexs = planetary()

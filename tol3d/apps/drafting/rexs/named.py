@@ -8,7 +8,9 @@ from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, PlanetarySe
 from tol3d.apps.drafting.rexs.kinematics import CARRIER
 from tol3d.apps.drafting.words import Names
 
-LONGEST: Final = 36  # characters, with which a tolerance's name has room for its kind
+NO_BRACKETS: Final = str.maketrans("", "", "[]")
+"""Programs write numbers of components in them."""
+LONGEST: Final = 40  # characters, with which a tolerance's name has room for its kind
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,8 @@ def named(gearbox: Gearbox, shafts: Sequence[Shaft], bearings: Sequence[Bearing]
     names, found = Names(), dict[int, str]()
     for number, wish, fallback in wishes:
         if number not in found:
-            found[number] = names.new(base_name(wish)[:LONGEST], f"{fallback} {number}")
+            near = base_name(wish).translate(NO_BRACKETS)[:LONGEST]
+            found[number] = names.new(near, f"{fallback} {number}")
     planets = {own.id: names.new("planet", "planet") for own in gearbox.sets}
     carriers = {own.id: names.new("carrier", "carrier") for own in gearbox.sets}
     return Named(shafts, found, planets, carriers, names)
