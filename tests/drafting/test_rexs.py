@@ -767,6 +767,10 @@ NAMED = {
         pair().having(4, support_vector=((5.0, 0.0, 60.5), "mm")),
         "cylindrical_stage 11: its shafts lie 60.5 mm apart; center_distance 60.6 mm is drafted",
     ),
+    "gear without a mate": (
+        replace(pair(), components={**pair().components, 14: pair().components[8]}),
+        "cylindrical_gear 14 'wheel': without a mesh, not drafted",
+    ),
     "bearing in a shaft": (
         pair().related("side", assembly=14, inner_part=3, outer_part=4),
         "1 bearing (needle) between parts that turn: not drafted",

@@ -57,6 +57,9 @@ def gearbox_of(document: Document) -> Gearbox:
     if not stages:
         raise RexsError(f"expected a cylindrical or planetary stage, got {', '.join(others) or 'none'}")
     left.lines += [f"{each}: not drafted" for each in others]
+    meshing = {stage.id for stage in stages} | {*gears}
+    alone = [own for own in document.all_of("cylindrical_stage", *GEARS) if own.id not in meshing]
+    left.lines += [f"{own}: without a mesh, not drafted" for own in alone]
     for stage in stages:
         require_mates(stage)
     stages = with_shifts(stages)
