@@ -922,6 +922,17 @@ def test_a_helical_gear_and_its_ring_have_the_same_hand(own: float, fits: bool) 
         assert refusal(rexs).endswith("helix_angle_reference_diameter: expected one angle with one sign, got others")
 
 
+def test_a_face_without_a_width_is_a_guess() -> None:
+    text = gearbox_draft(pair().having(5, face_width=None).file()).scene()[0]
+    assert "face_width: 20 mm, profile_shift: 0.2}  # gear 5; guess: face_width not in the file\n" in text
+    assert text.count("guess") == 1
+
+
+def test_the_grammar_says_which_gears_scenes_have() -> None:
+    assert rexs_scene.knows("spur_gear")
+    assert not rexs_scene.knows("square_gear")
+
+
 def test_numbers_in_brackets_are_part_of_a_name() -> None:
     rexs = pair()
     kind, _, attributes = rexs.components[8]
