@@ -1,4 +1,4 @@
-"""Scenes drafted from STEP files with their own tolerances: `scene_from`."""
+"""Scenes drafted from STEP files with their own tolerances: `scene_from`; from REXS files: see `rexs`."""
 
 from typing import TYPE_CHECKING
 

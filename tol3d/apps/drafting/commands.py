@@ -19,7 +19,11 @@ def new(
     ] = None,
     start: Annotated[
         Path | None,
-        typer.Option("--from", metavar="FILE...", help="STEP files: a scene of their parts, with their tolerances."),
+        typer.Option(
+            "--from",
+            metavar="FILE...",
+            help="STEP files, or one REXS file of a gearbox: a scene of their parts, with their tolerances.",
+        ),
     ] = None,
     seat: Annotated[
         list[str] | None,
@@ -31,7 +35,7 @@ def new(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
 ) -> None:
-    """Write a scene to start your own from, which runs: of a kind of system, or of STEP files; alone list the kinds."""
+    """Write a scene to start your own from, which runs: of a kind of system, or of files; alone list the kinds."""
     from tol3d.errors import InputError
     from tol3d.kinds import all_mechanisms
     from tol3d.study.system import starter_lines, starter_named
@@ -50,7 +54,7 @@ def new(
         err_console.print("tol3d new NAME writes the scene NAME.yaml as a starting point")
         return
     if len(words) > 1:
-        raise InputError(f"expected one kind of system, got {len(words)}; STEP files stand behind --from")
+        raise InputError(f"expected one kind of system, got {len(words)}; files stand behind --from")
     starter = starter_named(words[0], all_mechanisms())
     _write(out or Path(f"{starter.name}.yaml"), starter.text, force)
 
@@ -58,6 +62,7 @@ def new(
 def _draft(words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out: Path | None, force: bool) -> None:
     """Write a scene from STEP files, which are copied beside it where they lie elsewhere."""
     from tol3d.apps.drafting import Seat, scene_from
+    from tol3d.apps.drafting.rexs import is_rexs
     from tol3d.errors import InputError, unwritable
     from tol3d.files import read_file
     from tol3d.kinds import all_mechanisms
@@ -67,6 +72,9 @@ def _draft(words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out
     kinds = {starter.name for mechanism in all_mechanisms() for starter in starters_of(mechanism)}
     if both := next((word for word in words if word in kinds and not Path(word).exists()), None):
         raise InputError(f"expected a kind of system or --from with STEP files, got both: {both!r} is a kind")
+    if any(is_rexs(Path(word)) for word in words):
+        _draft_gearbox(words, [*seats, *faces], out, force)
+        return
     if len(seats) != len(faces):
         raise InputError(f"--seat: expected an --on for each, got {len(seats)} and {len(faces)}")
     contents = [read_file(Path(word)) for word in words]
@@ -89,6 +97,25 @@ def _draft(words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out
         except OSError as error:
             raise unwritable(path, error, "choose another folder with --out") from None
         tell(str(path))
+    _write(target, text, force)
+    for note in drafted.notes():
+        err_console.print(note, markup=False, highlight=False)
+
+
+def _draft_gearbox(words: Sequence[str], seats: Sequence[str], out: Path | None, force: bool) -> None:
+    """Write a scene from a REXS file, which the scene does not need any more."""
+    from tol3d.apps.drafting.rexs import gearbox_scene_from
+    from tol3d.errors import InputError
+    from tol3d.files import read_file
+
+    if len(words) > 1:
+        raise InputError(f"--from: expected one REXS file and no other, got {len(words)} files")
+    if seats:
+        raise InputError("--seat: expected STEP files, whose parts are placed; a REXS file places its own")
+    path = Path(words[0])
+    target = out or Path(path.name[: path.name.lower().rindex(".rexs")] + ".yaml")
+    _refuse_there(target, force)
+    text, drafted = gearbox_scene_from(read_file(path))
     _write(target, text, force)
     for note in drafted.notes():
         err_console.print(note, markup=False, highlight=False)

@@ -4,10 +4,10 @@ A drafted scene checked as `tol3d check` does, so that it runs as it is written.
 """
 
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, Protocol
 
 from tol3d.apps.drafting.drawing import source
 from tol3d.apps.drafting.entry import LAW as LAW_HERE
@@ -247,7 +247,17 @@ def found(parts: Sequence[DraftedPart], words: str, option: str) -> tuple[Drafte
     return part, own
 
 
-def settled(drafted: Draft, check: Callable[[str], None]) -> str:
+class Drafted(Protocol):
+    """A drafted scene of whatever files."""
+
+    def scene(self) -> tuple[str, Mapping[int, Entry]]:
+        """The text, and by its lines the entries that may be written otherwise or left out."""
+
+    def notes(self) -> Iterator[str]:
+        """Notes to read before the scene."""
+
+
+def settled(drafted: Drafted, check: Callable[[str], None]) -> str:
     """The text of a drafted scene that a check accepts: refused entries are written otherwise, or left out.
 
     Args:
@@ -272,7 +282,7 @@ def settled(drafted: Draft, check: Callable[[str], None]) -> str:
     raise StepError("no scene that can be checked comes of these files")
 
 
-def blame(problems: Sequence[str], by_line: dict[int, Entry]) -> Iterator[tuple[Entry, str]]:
+def blame(problems: Sequence[str], by_line: Mapping[int, Entry]) -> Iterator[tuple[Entry, str]]:
     """The entries that messages are about, each once; the one that refines another rather than that."""
     told: set[int] = set()
     for problem in problems:
@@ -289,7 +299,7 @@ def blame(problems: Sequence[str], by_line: dict[int, Entry]) -> Iterator[tuple[
             yield entry, words
 
 
-def entry_of(problem: str, by_line: dict[int, Entry]) -> Entry | None:
+def entry_of(problem: str, by_line: Mapping[int, Entry]) -> Entry | None:
     """The entry on whose line a message is, else the one that it names."""
     place = problem.split(": ", 1)[0].rpartition(":")[2]
     if place.isdecimal() and int(place) in by_line:

@@ -42,6 +42,7 @@ class Entry:
         losses: what its wordings lost so far.
         inspects: the `#id` of the tolerance whose limit a measure reads; None of others.
         below: those of the lower segments that it says too.
+        blank: True for a line to fill in, which is written as a comment.
     """
 
     section: Section
@@ -54,6 +55,7 @@ class Entry:
     losses: list[str] = field(default_factory=list)
     inspects: int | None = None
     below: tuple[int, ...] = ()
+    blank: bool = False
 
     @property
     def stands(self) -> bool:
@@ -78,7 +80,7 @@ class Entry:
         words = self.wording
         remark = f"  # {words.comment}" if words.comment else ""
         if len(words.lines) == 1:
-            yield f"  {self.name}: {words.lines[0]}{remark}"
+            yield f"  {'# ' if self.blank else ''}{self.name}: {words.lines[0]}{remark}"
             return
         yield f"  {self.name}:{remark}"
         for line in words.lines:
@@ -110,7 +112,7 @@ class Scene:
             standing = [entry for entry in self.entries if entry.section == section and entry.stands]
             if not standing:
                 continue
-            lines += ["", f"{section}:"]
+            lines += ["", f"{section}:" if any(not entry.blank for entry in standing) else f"# {section}:"]
             for own in standing:
                 for line in own.lines():
                     lines.append(line.replace(LAW, anchor))
