@@ -15,19 +15,21 @@ deviation takes from the normal backlash (-2 e1 sin(alpha) cos(psi1) ...) and th
 cos(alpha) sin(psi1) ...) of every effect that turns, of any pair; sin(psi) cos(alpha) + cos(psi) sin(alpha) is the sine
 of the sum. What rests drops out: tooth thickness, centre distance, bearing clearance, tilt, temperature. They return
 only in products with rotating deviations, and if base pitches differ, which is neglected here as in all stack-ups.
-Single flanks that deviate add the offset of the pair that touches first, see tooth_pairs.py.
+Single flanks that deviate add the offset of the pair that touches first, see tooth_pairs.py; so do the contact lines of
+helical gears whose axes lean.
 """
 
 import math
-from collections.abc import Iterator, Sequence
-from typing import Literal
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import Final, Literal
 
 import numpy as np
 
 from tol3d.gearing.model import Backlash, Kind, LostMotion, Mesh, Model, Reading, TransmissionError
+from tol3d.gearing.stack_up.contact_lines import ContactLines, lost
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Bound, Neglect, Role, Term
-from tol3d.gearing.stack_up.tooth_pairs import teeth_deviate
 from tol3d.gears import BevelPair, GearPair, InternalPair, SpurPair
 from tol3d.numerics.arrays import Array
 
@@ -69,6 +71,67 @@ class SpurStack(Stack[SpurPair | InternalPair]):
         """Longer part of the path of contact, from pitch point to tip [mm]: r_b |tan alpha_a - tan alpha_w|."""
         at_pitch = math.tan(self.pair.working_pressure_angle)
         return max(gear.base_radius * abs(gear.tip_roll - at_pitch) for gear in (self.pair.pinion, self.pair.wheel))
+
+
+POSITIONS_OF_A_PITCH: Final = 64
+"""At which the loss by contact lines is averaged: it is straight between kinks, and the mean off by 1e-3 of its range."""
+
+
+class HelicalStack(SpurStack):
+    """The stack-up of two helical gears: what happens in the transverse section, times cos(beta_b), and contact lines.
+
+    Every slice across the axes is a spur pair, so that shifts, thickness and growth act as there. Where axes lean the
+    gap is least at an end of a contact line, which depends on the position; see contact_lines.py. Neglected besides what
+    a spur pair neglects: lines end where their mates do, which stand the backlash j apart (f j/tan(beta_b) of a lean f).
+
+    Args:
+        at: turns of the driver [rad] at which a loss is averaged that is asked for without any; None: over a pitch.
+    """
+
+    pair: SpurPair
+
+    def __init__(self, model: Model, mesh: Mesh, pair: SpurPair, reading: Reading, at: Sequence[float] | None = None) -> None:
+        super().__init__(model, mesh, pair, reading)
+        self._lines = ContactLines(pair)
+        step = pair.pinion.angular_pitch / POSITIONS_OF_A_PITCH
+        self._at = [k * step for k in range(POSITIONS_OF_A_PITCH)] if at is None else at
+
+    def lost(self, in_plane: Array, across: Array, driver_angle: Array | None = None) -> Array:
+        """As of spur gears, on the contact lines at the driver's turns [rad] (rows,); averaged where None is given."""
+        return np.asarray(sum(self._of_sides(in_plane, across, driver_angle)))
+
+    def _of_sides(self, in_plane: Array, across: Array, driver_angle: Array | None) -> tuple[Array, Array]:
+        """Losses of right and left flanks [mm], (rows,)."""
+        ends = {
+            side: self._mean_ends[side] if driver_angle is None else self._lines.ends(side, driver_angle)
+            for side in (1, -1)
+        }
+        return lost((in_plane + across) / 2, ends[1]), lost((in_plane - across) / 2, ends[-1])
+
+    @cached_property
+    def _mean_ends(self) -> Mapping[int, tuple[Array, Array]]:
+        """Means of the ends of contact lines over the positions that are averaged, by side."""
+        each = {side: self._lines.ends(side, np.array(self._at)) for side in (1, -1)}
+        return {side: (low.mean(), high.mean()) for side, (low, high) in each.items()}
+
+    def _aside_by_tilts(self, in_plane: Array, across: Array, driver_angle: Array) -> Array:
+        right, left = self._of_sides(in_plane, across, driver_angle)
+        return np.asarray((right - left) / 2)
+
+    @property
+    def turns_by_teeth(self) -> bool:
+        """True if axes lean."""
+        return any(term.leans for term in self.terms)
+
+    def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
+        """As of single flanks: the pair of leaning axes that touches first, (trials, positions) [mm at the arm]."""
+        in_plane, across = self._lost_by_tilts(deviations)
+        return side * lost((in_plane + side * across)[:, None] / 2, self._lines.ends(side, driver_angle))
+
+    @property
+    def _longest_path(self) -> float:
+        """Distance [mm] along the normals that a line in the middle of the face may lie from the pitch point."""
+        return self._lines.furthest * self.pair.base_helix_cosine
 
 
 Terms = tuple[Term, ...]
@@ -150,9 +213,11 @@ class BevelStack(Stack[BevelPair]):
         return (*self.sideways, *self._left_out("aside_by_turns"))
 
 
-def stack_of(model: Model, mesh: Mesh, reading: Reading) -> Stack[GearPair]:
-    """The stack-up of a mesh for one of its readings."""
+def stack_of(model: Model, mesh: Mesh, reading: Reading, at: Sequence[float] | None = None) -> Stack[GearPair]:
+    """The stack-up of a mesh for one of its readings, at the driver's turns [rad] (positions,) or at any."""
     pair = mesh.pair
+    if isinstance(pair, SpurPair) and pair.pinion.helix_angle:
+        return HelicalStack(model, mesh, pair, reading, at)
     if isinstance(pair, SpurPair | InternalPair):
         return SpurStack(model, mesh, pair, reading)
     if isinstance(pair, BevelPair):
@@ -163,7 +228,7 @@ def stack_of(model: Model, mesh: Mesh, reading: Reading) -> Stack[GearPair]:
 def analytic_backlash(model: Model, kind: Backlash, deviations: Array, driver_angle: Array) -> Array:
     """Value of a backlash measure by the stack-up [mm, or rad for an angle], (rows,).
 
-    j_wt = j_bn / cos(alpha_w); an angle is j_bn over the arm of the gear that turns. For the rest angle it is the
+    j_wt = j_bn / (cos(alpha_w) cos(beta_b)); an angle is j_bn over the arm of the gear that turns. For the rest angle it is the
     middle between both rests, by which the driven gear's play lies aside.
     """
     stack = stack_of(model, model.mesh(kind.mesh), kind.reading)
@@ -177,11 +242,12 @@ def analytic_backlash(model: Model, kind: Backlash, deviations: Array, driver_an
 
 
 def per_normal_backlash(model: Model, kind: Backlash) -> float:
-    """Factor from j_bn [mm] to the measure: 1, 1/cos(alpha_w) or one over the gear's arm [rad/mm]."""
+    """Factor from j_bn [mm] to the measure: 1, 1/(cos(alpha_w) cos(beta_b)) or one over the gear's arm [rad/mm]."""
     if kind.quantity == "normal_backlash":
         return 1.0
     if kind.quantity == "circumferential_backlash":
-        return 1.0 / math.cos(model.mesh(kind.mesh).pair.working_pressure_angle)
+        pair = model.mesh(kind.mesh).pair
+        return 1.0 / (math.cos(pair.working_pressure_angle) * pair.base_helix_cosine)
     return 1.0 / model.gear(kind.gear).gear.section_arm
 
 
@@ -211,7 +277,7 @@ def analytic_transmission_error(
         for columns, wave in _waves(model, backlash, driver):
             for column, own in zip(columns, wave, strict=True):
                 total += np.multiply.outer(deviations[:, column], factor * (own - own[0]))
-        if teeth_deviate(model, model.mesh(backlash.mesh)):
+        if stack_of(model, model.mesh(backlash.mesh), backlash.reading).turns_by_teeth:
             turned = _turned_by_teeth(model, backlash, deviations, driver)
             total += factor * (turned - turned[:, :1])
     return total

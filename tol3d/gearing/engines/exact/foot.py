@@ -84,11 +84,29 @@ def widest(driver: Any, driven: Any, tangent: float) -> float:
     raise NotImplementedError
 
 
+def leaning(tooth: Any, sigma: float) -> float:
+    """Fall of the profile parameter along a generator of a flank per step along the face; one variant a kind.
+
+    [rad/mm] for the kinds whose generators are no lines of a constant parameter: helical gears; 0 of all others.
+    """
+    raise NotImplementedError
+
+
 def external(kind: type) -> None:
     """Register the gears of a kind as external; see foot.py."""
     variant(opening, kind)(external_opening)
     variant(handed, kind)(external_side)
     variant(widest, kind)(external_radius)
+
+
+def straight(kind: type) -> None:
+    """Register a kind of teeth whose generators keep their profile parameter along the face."""
+    variant(leaning, kind)(straight_leaning)
+
+
+def straight_leaning(tooth: Any, sigma: float) -> float:
+    """The parameter stays."""
+    return 0.0
 
 
 def external_opening(driven: Any) -> float:

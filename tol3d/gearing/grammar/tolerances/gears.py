@@ -9,7 +9,7 @@ from tol3d.gearing.grammar.parts import GearSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, Nominal, Unit, in_direction
 from tol3d.gears import Gear, InternalGear
 from tol3d.gears.cylindrical_gear import CylindricalGear
-from tol3d.gears.tooth_measures import OverPins, PinScale, Span, ToothMeasure
+from tol3d.gears.tooth_measures import OverBalls, OverPins, PinScale, Span, ToothMeasure
 from tol3d.scene.bases import Length
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.entry import Entry
@@ -120,16 +120,20 @@ class RunOutSpec(GearToleranceSpec):
 
 
 class MeasuredOverSpec(Strict):
-    """`{span: 4}` or `{pins: 3.5 mm}`: how the teeth of a spur gear or a ring are measured."""
+    """`{span: 4}`, `{pins: 3.5 mm}` or `{balls: 3.5 mm}`: how the teeth of a spur or helical gear or a ring are measured.
+
+    Pins and balls of the same diameter give the same size, except over an odd number of helical teeth.
+    """
 
     span: int | None = Field(default=None, ge=1, description="over so many teeth, of a ring over so many spaces")
     pins: Length | None = Field(
-        default=None, description="diameter of two pins or balls, over which it is measured, in a ring between them"
+        default=None, description="diameter of two pins, over which it is measured, in a ring between them"
     )
+    balls: Length | None = Field(default=None, description="diameter of two balls in one transverse plane, likewise")
 
     @model_validator(mode="after")
     def _refuse_other_than_one(self) -> Self:
-        given = [name for name in ("span", "pins") if getattr(self, name) is not None]
+        given = [name for name in ("span", "pins", "balls") if getattr(self, name) is not None]
         if len(given) != 1:
             raise refused("", "either a span such as {span: 4}, or {pins: 3.5 mm}", " and ".join(given) or "neither")
         return self
@@ -137,7 +141,14 @@ class MeasuredOverSpec(Strict):
     @property
     def measure(self) -> ToothMeasure:
         """Measure of it on any gear."""
+        if self.balls is not None:
+            return OverBalls(self.balls.internal)
         return Span(self.span or 0) if self.pins is None else OverPins(self.pins.internal)
+
+    @property
+    def key(self) -> str:
+        """The word under which it is stated."""
+        return next(name for name in ("span", "pins", "balls") if getattr(self, name) is not None)
 
 
 def _measured_shape(value: object) -> str:
