@@ -201,7 +201,9 @@ class CylindricalGear(ToothedGear):
     @property
     def normal_tip_thickness(self) -> float:
         """s_na = s_a cos beta_a [mm], tan beta_a = tan beta d_a/d."""
-        return self.tip_thickness * math.cos(math.atan(math.tan(self.helix_angle) * self.tip_radius / self.reference_radius))
+        return self.tip_thickness * math.cos(
+            math.atan(math.tan(self.helix_angle) * self.tip_radius / self.reference_radius)
+        )
 
     @property
     def section_thickness(self) -> float:

@@ -166,7 +166,9 @@ class SpurGear(CylindricalGear):
             return self.base_radius
         depth = self.module * (RACK_ADDENDUM - self.profile_shift)
         ends = (self.base_radius, self.tip_radius)
-        return rack_undercut_radius(self.transverse_pressure_angle, self.reference_radius, depth, ends, self.pressure_angle_at)
+        return rack_undercut_radius(
+            self.transverse_pressure_angle, self.reference_radius, depth, ends, self.pressure_angle_at
+        )
 
     def refuse_undercut(self, start: float, name: str, where: str) -> None:
         """Raise where a rack of addendum 1 would cut into the flank in use.

@@ -70,7 +70,10 @@ def helices_elsewhere(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         if not isinstance(move, MeshSpec):
             for gear in scene.of(HelicalGearSpec):
                 path: KeyPath = ("parts", gear, "kind")
-                yield path, f"expected a spur_gear, for {name!r} is {move.words}: helical gears are simulated in meshes alone"
+                yield (
+                    path,
+                    f"expected a spur_gear, for {name!r} is {move.words}: helical gears are simulated in meshes alone",
+                )
             return
 
 
@@ -95,7 +98,9 @@ def forces_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         bearing = scene.parts[spec.of]
         if spec.direction != "tooth_force" or not isinstance(bearing, BearingSpec):
             continue
-        gear = next((g for g in gears_on(bearing.shaft, scene.parts) if isinstance(scene.parts[g], HelicalGearSpec)), None)
+        gear = next(
+            (g for g in gears_on(bearing.shaft, scene.parts) if isinstance(scene.parts[g], HelicalGearSpec)), None
+        )
         if gear is not None:
             words = "expected apart, random or {at: …}, got tooth_force: the thrust of the helical gear "
             yield ("tolerances", str(name), "direction"), f"{words}{gear!r} turns the force at each bearing its own way"

@@ -90,7 +90,9 @@ class HelicalStack(SpurStack):
 
     pair: SpurPair
 
-    def __init__(self, model: Model, mesh: Mesh, pair: SpurPair, reading: Reading, at: Sequence[float] | None = None) -> None:
+    def __init__(
+        self, model: Model, mesh: Mesh, pair: SpurPair, reading: Reading, at: Sequence[float] | None = None
+    ) -> None:
         super().__init__(model, mesh, pair, reading)
         self._lines = ContactLines(pair)
         step = pair.pinion.angular_pitch / POSITIONS_OF_A_PITCH
