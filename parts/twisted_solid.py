@@ -1,6 +1,6 @@
 """A CAD solid swept along z while its outline turns: gears with screw teeth, whose faces are exact but for a spline.
 
-A point (x, y) of the outline goes along its helix (x cos(kappa z) - y sin(kappa z), x sin(kappa z) + y cos(kappa z), z).
+A point (x, y) of the outline runs on a helix, (x cos(kappa z) - y sin(kappa z), x sin(kappa z) + y cos(kappa z), z).
 Cosine and sine are complete cubic splines of z, so that every face is a tensor product of its edge and these two: along
 the edge it is as exact as that, and neighbouring faces share their helices to the last bit. A sweep of OCC along an
 auxiliary helix is 20 um off.

@@ -9,7 +9,7 @@ RIGHT: Final[Flank] = 1
 LEFT: Final[Flank] = -1
 
 Hand = Literal[1, -1]
-"""h: +1 a right-hand helix, whose teeth lean to the right seen from outside with the axis upright; -1 a left-hand one."""
+"""h: +1 a right-hand helix, whose teeth lean to the right, seen from outside with the axis upright; -1 a left one."""
 
 RIGHT_HAND: Final[Hand] = 1
 LEFT_HAND: Final[Hand] = -1

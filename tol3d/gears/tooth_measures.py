@@ -1,7 +1,7 @@
 """Tooth thickness as shops measure it: the span over teeth, and the size over or between two pins or balls.
 
-Closed forms of ISO 21771-1 for spur and helical gears. Sizes of an internal gear are those of its spaces, which have the shape of
-the teeth of an external one. All forms and their inverses are exact for rigid involutes. Lengths in mm.
+Closed forms of ISO 21771-1 for spur and helical gears. Sizes of an internal gear are those of its spaces, which have
+the shape of the teeth of an external one. All forms and their inverses are exact for rigid involutes. Lengths in mm.
 """
 
 import math
@@ -25,8 +25,8 @@ REACH_SLACK = 1e-9  # mm; contact at the very end of a flank is allowed
 class Span:
     """The span W_k: distance of two parallel faces over k teeth, of an internal gear over k spaces.
 
-    W_k = m_n cos alpha_n (pi (k - 1/2) + z inv alpha_t + 2 x tan alpha_n) (ISO 21771-1); internal: - 2 x tan alpha. Of a
-    helical gear the faces touch W_k sin beta_b apart along the axis.
+    W_k = m_n cos alpha_n (pi (k - 1/2) + z inv alpha_t + 2 x tan alpha_n) (ISO 21771-1); internal: - 2 x tan alpha.
+    The faces touch W_k sin beta_b apart along the axis.
 
     Args:
         teeth: k; the number of spaces of an internal gear.
@@ -81,8 +81,8 @@ class Span:
 class OverPins:
     """The size M over two pins in opposite spaces; between them for an internal gear.
 
-    M = 2 r_K + D_M, for an odd number of teeth 2 r_K cos(pi/(2 z)) + D_M, inv alpha_K = D_M/(2 r_b cos beta_b) + eta_b -
-    pi/z, r_K = r_b/cos alpha_K, eta_b half the angle of a tooth at the base circle. For an internal gear D_M is
+    M = 2 r_K + D_M, for an odd number of teeth 2 r_K cos(pi/(2 z)) + D_M, inv alpha_K = D_M/(2 r_b cos beta_b) + eta_b
+    - pi/z, r_K = r_b/cos alpha_K, eta_b half the angle of a tooth at the base circle. For an internal gear D_M is
     negative, and inv alpha_K = D_M/(2 r_b cos beta_b) + eta_b with half the angle of a space (ISO 21771-1). A pin lies
     along its space: of a helical gear a straight one leans, and between parallel anvils two of them stand exactly
     opposite for any number of teeth, M = 2 r_K + D_M.

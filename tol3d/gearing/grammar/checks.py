@@ -85,8 +85,8 @@ def readings_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
             continue
         path: KeyPath = ("measures", str(name))
         if measure.read_at not in (None, "face"):
-            words = f"expected face, got {measure.read_at}: helical teeth are read over the face, which their contact lines cross"
-            yield (*path, "read_at"), words
+            words = f"expected face, got {measure.read_at}: helical teeth are read over the face"
+            yield (*path, "read_at"), f"{words}, which their contact lines cross"
         if measure.tooth != "all":
             words = f"expected all, got {measure.tooth}: of helical teeth several touch at once"
             yield (*path, "tooth"), words

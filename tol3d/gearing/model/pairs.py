@@ -157,8 +157,8 @@ SHARP_TIP: Final = 0.2  # normal modules; hardened teeth chip where their tips a
 def _(gear: SpurGear) -> str:
     if gear.helix_angle and gear.normal_tip_thickness < SHARP_TIP * gear.module:
         return (
-            f"sharp tips: the teeth are {gear.normal_tip_thickness:.4f} mm thick at the tip in the normal section, below "
-            f"{SHARP_TIP:g} normal modules; lower addendum or profile_shift"
+            f"sharp tips: the teeth are {gear.normal_tip_thickness:.4f} mm thick at the tip in the normal section, "
+            f"below {SHARP_TIP:g} normal modules; lower addendum or profile_shift"
         )
     if gear.undercut_radius > gear.base_radius:
         return (

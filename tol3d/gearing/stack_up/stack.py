@@ -103,7 +103,7 @@ class Stack(NominalMesh[Pair]):
         return self.teeth is not None
 
     def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
-        """Turn of the driven gear about its z [mm at its arm] by single flanks where a side touches; 0 if all are alike.
+        """Turn of the driven gear about its z [mm at its arm] by single flanks where a side touches.
 
         Args:
             side: 1 where the driver's right flanks touch, -1 where its left ones do.

@@ -105,8 +105,9 @@ Pair = TypeVar("Pair", bound=GearPair, covariant=True)
 class NominalMesh(Generic[Pair]):
     """One mesh of a model, for one of its readings; `pair` is the mesh's.
 
-    `sin` and `cos` are those of alpha_w, times cos(beta_b) of helical gears: the parts along the normals of shifts in the
-    plane of the axes and across it. `sense` is that in which the driven gear turns to leave the driver's right flanks: 1, of an internal pair -1.
+    `sin` and `cos` are those of alpha_w, times cos(beta_b) of helical gears: the parts along the normals of shifts in
+    the plane of the axes and across it. `sense` is that in which the driven gear turns to leave the driver's right
+    flanks: 1, of an internal pair -1.
     """
 
     def __init__(self, model: Model, mesh: Mesh, pair: Pair, reading: Reading) -> None:

@@ -158,8 +158,8 @@ def helical_line_of_action(
 ) -> Nearest:
     """On parallel axes the flanks of a pair touch along a line: in every section as spur flanks, turned, do.
 
-    The gap is the same along that line, and for every pair of one base pitch; see spur.spur_line_of_action. What is left
-    of the line are the heights at which both flanks have its rolls.
+    The gap is the same along that line, and for every pair of one base pitch; see spur.spur_line_of_action. Of the line
+    there are the heights at which both flanks have its rolls.
     """
     own_azimuth, mate_azimuth, sigma, offset = facing
     own = helical_tooth

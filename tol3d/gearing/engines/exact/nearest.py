@@ -32,7 +32,7 @@ def down_to(slope: float, bow: float, low: float, high: float) -> float:
 
 @part
 def started(own: Any, lean: float, start: float, face: float) -> tuple[float, float]:
-    """Where on own flank to start, at a profile parameter and a face: along its generator up to an end of the profile."""
+    """The start on own flank for a profile parameter and a face: along its generator as far as the profile goes."""
     if lean != 0.0:
         beyond = start - min(max(start, own.begin), own.end)
         moved = min(max(face + beyond / lean, own.low), own.high)

@@ -120,7 +120,7 @@ class RunOutSpec(GearToleranceSpec):
 
 
 class MeasuredOverSpec(Strict):
-    """`{span: 4}`, `{pins: 3.5 mm}` or `{balls: 3.5 mm}`: how the teeth of a spur or helical gear or a ring are measured.
+    """`{span: 4}`, `{pins: 3.5 mm}` or `{balls: 3.5 mm}`: how teeth of a cylindrical gear are measured.
 
     Pins and balls of the same diameter give the same size, except over an odd number of helical teeth.
     """
