@@ -18,6 +18,7 @@ from tol3d.gears.involute import inverse_involute, involute
 from tol3d.numerics.arrays import Array
 
 PIN_STEP = 0.05  # mm; diameters of proposed pins are multiples of it
+BISECTIONS = 60  # of an angle below a right one: to rounding
 REACH_SLACK = 1e-9  # mm; contact at the very end of a flank is allowed
 
 
@@ -262,13 +263,27 @@ def _possible_pins(gear: CylindricalGear, kind: type[OverPins]) -> Iterator[Over
     if not 0.0 < angle < math.pi / 2:
         return
     wanted = sign * 2 * gear.base_radius * (math.tan(angle) - roll)
-    if gear.helix_angle:  # to first order in the helix, which a pin leans by; the search goes on from there
-        wanted /= gear.base_helix_cosine
+    if gear.helix_angle:
+        wanted = _screw_pin(gear, roll, angle)
     nearest = round(wanted / PIN_STEP)
     for step in range(round(gear.module / PIN_STEP) + 1):
         for count in (nearest + step, nearest - step):
             if count > 0 and _is_possible(gear, pins := kind(round(count * PIN_STEP, 6))):
                 yield pins
+
+
+def _screw_pin(gear: CylindricalGear, roll: float, angle: float) -> float:
+    """Diameter D [mm] of a pin that touches screw flanks at a roll t [rad].
+
+    tan alpha_K = t + D cos beta_b/(2 r_b) and inv alpha_K = D/(2 r_b cos beta_b) + t - angle meet where the first less
+    alpha_K is the second: by bisection over alpha_K, which is below the spur gear's `angle`.
+    """
+    cosine, low, high = gear.base_helix_cosine, 0.0, angle
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        turn = (math.tan(middle) - roll) / cosine**2  # D/(2 r_b cos beta_b)
+        low, high = (middle, high) if involute(middle) > turn + roll - angle else (low, middle)
+    return 2 * gear.base_radius * (math.tan(low) - roll) / cosine
 
 
 def _is_possible(gear: CylindricalGear, pins: OverPins) -> bool:

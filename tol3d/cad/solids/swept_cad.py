@@ -177,7 +177,7 @@ def _turned(nodes: Array, angle: float) -> Array:
     if angle == 0.0:
         return nodes
     cos, sin = math.cos(angle), math.sin(angle)
-    return nodes @ np.array([[cos, sin], [-sin, cos]])
+    return np.asarray(nodes @ np.array([[cos, sin], [-sin, cos]]))
 
 
 def tessellate(part: NamedSolid, width: float, deflection: float) -> Arrays:

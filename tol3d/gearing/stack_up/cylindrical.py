@@ -55,7 +55,7 @@ class SpurStack(Stack[SpurPair | InternalPair]):
 
 
 POSITIONS_OF_A_PITCH: Final = 64
-"""At which the loss by contact lines is averaged: straight between kinks, so that the mean is off by 1e-3 of its range."""
+"""At which the loss by contact lines is averaged; it is straight between kinks, the mean off by 1e-3 of its range."""
 
 
 class HelicalStack(SpurStack):
