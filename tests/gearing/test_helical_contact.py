@@ -26,7 +26,7 @@ UM = 1e-3  # mm
 URAD = 1e-6
 BOTH = frozenset(("driver", "driven"))
 
-Pairs = tuple[float, float], tuple[float, float]
+Pairs = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -68,8 +68,8 @@ def base_pair(centre_distance: float = 53.0, shift: float = 0.5441135839) -> Spu
     """The pair of most worked cases."""
     pinion = SpurGear(23, 1.0, ALPHA, 16.0, profile_shift=0.55, helix_angle=math.radians(30.0))
     wheel = SpurGear(67, 1.0, ALPHA, 11.0, profile_shift=shift, helix_angle=math.radians(30.0), hand=LEFT_HAND)
-    thin = (replace(gear, tooth_thickness_deviation=-off) for gear, off in ((pinion, 0.06), (wheel, 0.08)))
-    return SpurPair(*thin, centre_distance)
+    thin = [replace(gear, tooth_thickness_deviation=-off) for gear, off in ((pinion, 0.06), (wheel, 0.08))]
+    return SpurPair(thin[0], thin[1], centre_distance)
 
 
 SECOND = SpurPair(
@@ -129,7 +129,12 @@ def random_places(rng: np.random.Generator, size: float = 1.0) -> Places:
     shifts = rng.uniform(-1, 1, (2, 3)) * np.array([0.01, 0.01, 0.3]) * size
     tilts = rng.uniform(-3e-4, 3e-4, (2, 2)) * size
     centres = np.stack([rng.uniform(0, 0.015, 2) * size, rng.uniform(0, 2 * math.pi, 2)], axis=-1)
-    return Places(shifts.tolist(), tuple(map(tuple, tilts)), tuple(map(tuple, centres)))  # type: ignore[arg-type]
+    return Places(shifts.tolist(), _pairs(tilts), _pairs(centres))
+
+
+def _pairs(values: Array) -> Pairs:
+    (a, b), (c, d) = values.tolist()
+    return (a, b), (c, d)
 
 
 def random_pair(rng: np.random.Generator) -> tuple[SpurPair, tuple[ScrewGear, ScrewGear]]:
@@ -221,10 +226,11 @@ def mirrored(places: Places, pitch: float) -> Places:
     The driven gear's space on the line of centres is then that on the other side of its tooth 0, a pitch [rad] on.
     """
     shifts = [(x, -y, z) for x, y, z in places.shifts]
-    tilts = tuple((along, -out) for along, out in places.tilts)
+    (along, out), (other_along, other_out) = places.tilts
+    tilts = ((along, -out), (other_along, -other_out))
     (first, at), (second, other) = places.centres
     centres = ((first, -at), (second, -other - pitch))
-    return Places(shifts, tilts, centres)  # type: ignore[arg-type]
+    return Places(shifts, tilts, centres)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -234,9 +240,8 @@ def test_a_mirrored_pair_reads_the_same(seed: int) -> None:
     pair, _ = random_pair(rng)
     places, angle = random_places(rng), float(rng.uniform(-3.0, 3.0))
     hands = {RIGHT_HAND: LEFT_HAND, LEFT_HAND: RIGHT_HAND}
-    other = SpurPair(
-        *(replace(gear, hand=hands[gear.hand]) for gear in (pair.pinion, pair.wheel)), pair.centre_distance
-    )
+    pinion, wheel = (replace(gear, hand=hands[gear.hand]) for gear in (pair.pinion, pair.wheel))
+    other = SpurPair(pinion, wheel, pair.centre_distance)
     ours, theirs = (
         read(pair, angle, RIGHT, places),
         read(other, -angle, LEFT, mirrored(places, pair.wheel.angular_pitch)),

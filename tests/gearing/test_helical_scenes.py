@@ -142,7 +142,8 @@ def test_builds_at_their_tolerances_differ_by_tenths_of_a_micrometre(scene: Scen
 
 def test_transmission_error_follows_contact_lines_of_tilted_axes(tmp_path: Any) -> None:
     """A constant tilt of 0.3 mrad alone: up to p_bn sin(beta_b) cos(beta_b) f within every pitch, by both methods."""
-    tilt = "tolerances:\n  out: {kind: axis_out_of_plane, of: gear pair, distribution: {kind: constant, value: 0.3 mrad}}\n"
+    constant = "distribution: {kind: constant, value: "
+    tilt = f"tolerances:\n  out: {{kind: axis_out_of_plane, of: gear pair, {constant}0.3 mrad}}}}\n"
     thin = "  thin: {kind: tooth_thickness, of: wheel, distribution: {kind: constant, value: -100 um}}\n"
     (path := tmp_path / "tilted.yaml").write_text(text(tilt + thin))
     model = model_of_scene(path)

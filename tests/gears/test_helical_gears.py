@@ -200,7 +200,7 @@ def test_overlap_carries_a_pair_that_its_profile_alone_would_not() -> None:
         8 * math.tan(steep.pinion.base_helix_angle) / steep.pinion.transverse_base_pitch
     )
     steep.refuse_interference()
-    narrow = SpurPair(*(replace(gear, face_width=0.5) for gear in (steep.pinion, steep.wheel)), 19.3)
+    narrow = SpurPair(replace(steep.pinion, face_width=0.5), replace(steep.wheel, face_width=0.5), 19.3)
     with pytest.raises(GeometryError, match=r"total contact ratio 0\.\d+ \(0\.\d+ over the profile\) is below 1"):
         narrow.refuse_interference()
 

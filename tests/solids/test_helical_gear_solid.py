@@ -74,7 +74,12 @@ def test_strips_lie_within_their_chord_error_inside_the_flank(name: str, flank: 
             key: {side: arrays[key][index] for index, side in enumerate((RIGHT, LEFT))}
             for key in ("inner", "outer", "normals")
         }
-        strips = FlankStrips(arrays["parameter"], **ends, chord_error=float(arrays["chord_error"]), flank_error=0.0)
+        strips = FlankStrips(
+            np.asarray(arrays["parameter"], dtype=float),
+            **ends,
+            chord_error=float(arrays["chord_error"]),
+            flank_error=0.0,
+        )
         assert float(arrays["flank_error"]) < MEASURING
         vertices, triangles = strip_mesh(strips, RIGHT if flank == RIGHT else LEFT, 0.0)
         corners = vertices[triangles]

@@ -120,7 +120,7 @@ def cylindrical_gear(scene: Scene, name: str) -> SpurGear | InternalGear:
 
 
 def _spur_gear(spec: SpurGearSpec | HelicalGearSpec) -> SpurGear:
-    is_helical = isinstance(spec, HelicalGearSpec)
+    helix = (spec.helix_angle.internal, spec.hand) if isinstance(spec, HelicalGearSpec) else (0.0, "right")
     return SpurGear(
         teeth=spec.teeth,
         module=spec.module.internal,
@@ -131,8 +131,8 @@ def _spur_gear(spec: SpurGearSpec | HelicalGearSpec) -> SpurGear:
         dedendum=spec.dedendum,
         root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
         bore=internal(spec.bore),
-        helix_angle=spec.helix_angle.internal if is_helical else 0.0,
-        hand=LEFT_HAND if is_helical and spec.hand == "left" else RIGHT_HAND,
+        helix_angle=helix[0],
+        hand=LEFT_HAND if helix[1] == "left" else RIGHT_HAND,
     )
 
 

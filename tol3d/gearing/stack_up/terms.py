@@ -214,8 +214,8 @@ def _leaning(effect: AxisTilt, mesh: NominalMesh[SpurPair | InternalPair], contr
     if not mesh.pair.pinion.helix_angle:
         return Contribution(opening)
     radius = mesh.pair.working_radii[0 if role == "driver" else 1]
-    along = mesh.screwed(role) * radius * (-1 if role == "driver" else 1)
-    return Contribution(opening, aside=_turned(contributor, (x, y), per_y=along))
+    screwed = mesh.screwed("driven") * radius  # the driver's teeth are on the other side of its axis
+    return Contribution(opening, aside=_turned(contributor, (x, y), per_y=screwed))
 
 
 def _turns(effect: AxisTilt, mesh: NominalMesh[GearPair], contributor: Contributor, role: Role) -> tuple[Array, Array]:

@@ -92,6 +92,18 @@ def leaning(tooth: Any, sigma: float) -> float:
     raise NotImplementedError
 
 
+def first_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> float:
+    """Height on own face at which to start a search [mm]; one variant a kind.
+
+    Args:
+        own, mate: the gears' teeth.
+        pose: mate from own.
+        sigma: side of the flanks.
+        face: the middle of the common face.
+    """
+    raise NotImplementedError
+
+
 def external(kind: type) -> None:
     """Register the gears of a kind as external; see foot.py."""
     variant(opening, kind)(external_opening)
@@ -102,6 +114,12 @@ def external(kind: type) -> None:
 def straight(kind: type) -> None:
     """Register a kind of teeth whose generators keep their profile parameter along the face."""
     variant(leaning, kind)(straight_leaning)
+    variant(first_face, kind)(middle_face)
+
+
+def middle_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> float:
+    """The middle."""
+    return face
 
 
 def straight_leaning(tooth: Any, sigma: float) -> float:

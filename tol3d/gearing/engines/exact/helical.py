@@ -14,6 +14,7 @@ from tol3d.gearing.engines.exact.foot import (
     PER_TURN,
     TURN,
     external,
+    first_face,
     flank_of,
     foot,
     grown,
@@ -141,6 +142,25 @@ def helical_foot(
 def helical_turn(mate: HelicalTooth, gap: float, offset: float, at: Foot) -> float:
     """Flanks of one tooth that stand a turn apart lie r_b cos(beta_b) times that apart."""
     return gap * mate.per_arm
+
+
+@variant(first_face, HelicalTooth)
+def helical_first_face(helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float, face: float) -> float:
+    """The end of the common face towards which all contact lines close as axes lean; the middle of parallel axes."""
+    own = helical_tooth
+    square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
+    if (pose.xz == 0.0 and pose.yz == 0.0) or square <= bases * bases:
+        return face
+    tangent, scale = math.sqrt(square - bases * bases), 1.0 / square
+    ux, uy = scale * (pose.x * bases - sigma * pose.y * tangent), scale * (pose.y * bases + sigma * pose.x * tangent)
+    # the driver's strings point against the mate's: its generators lean along -(-uy, ux)
+    wx, wy = pose.xx * uy - pose.yx * ux, pose.xy * uy - pose.yy * ux
+    slope = own.base * own.twist
+    gx = slope * (pose.xx * wx + pose.xy * wy) + pose.xz
+    gy = slope * (pose.yx * wx + pose.yy * wy) + pose.yz
+    gz = slope * (pose.zx * wx + pose.zy * wy) + pose.zz
+    falling = sigma * (mate.cosine * (uy * gx - ux * gy) + mate.rise * gz)
+    return max(own.low, mate.low - pose.z) if falling > 0.0 else min(own.high, mate.high - pose.z)
 
 
 @part
