@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tol3d.gearing.engines.exact.foot import first_face, flank_of, handed, leaning, opening, section
+from tol3d.gearing.engines.exact.foot import first_face, flank_of, handed, leaning, opening, promise, section
 from tol3d.gearing.engines.exact.nearest import QUICK_FALL, nearest
 from tol3d.gearing.engines.exact.numbers import (
     ALIKE,
@@ -284,8 +284,15 @@ def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
     x, y, z, nx, ny, nz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     face = first_face(own, build.driven, pose, sigma, middle.low)
     in_middle = (0.5 * (pair.lowest + pair.highest) - sigma * at.driver) / pair.driver_pitch
+    first_order = math.inf
     for step in range(count):
         tooth = sigma * middle_first(step, first, count, in_middle)
+        if one_base_pitch and leaning(own, sigma) != 0.0:
+            start = start_on(build, pose, sigma, azimuths(build, at, sigma, tooth)[0])
+            order, leeway = promise(own, build.driven, pose, sigma, start, abs(gap) if gap < math.inf else 0.0)
+            if order > first_order + leeway:
+                continue
+            first_order = min(first_order, order)
         near = pair_nearest(build, at, sigma, tooth, pose, own, face, look.per_turn, QUICK_FALL)
         if near.gap == math.inf:
             continue

@@ -104,6 +104,21 @@ def first_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> flo
     raise NotImplementedError
 
 
+def promise(own: Any, mate: Any, pose: Any, sigma: float, start: float, apart: float) -> tuple[float, float]:
+    """Order in which the pairs of one base pitch touch as axes lean, and its leeway; one variant a kind.
+
+    A pair that comes later than another by more than the leeway is not nearest. (0, 0) where nothing is known.
+
+    Args:
+        own, mate: the gears' teeth.
+        pose: mate from own.
+        sigma: side of the flanks.
+        start: profile parameter of own flank of a pair, in the middle of the face.
+        apart: size of the gap [mm], about.
+    """
+    raise NotImplementedError
+
+
 def external(kind: type) -> None:
     """Register the gears of a kind as external; see foot.py."""
     variant(opening, kind)(external_opening)
@@ -115,11 +130,17 @@ def straight(kind: type) -> None:
     """Register a kind of teeth whose generators keep their profile parameter along the face."""
     variant(leaning, kind)(straight_leaning)
     variant(first_face, kind)(middle_face)
+    variant(promise, kind)(no_promise)
 
 
 def middle_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> float:
     """The middle."""
     return face
+
+
+def no_promise(own: Any, mate: Any, pose: Any, sigma: float, start: float, apart: float) -> tuple[float, float]:
+    """Any may touch."""
+    return 0.0, 0.0
 
 
 def straight_leaning(tooth: Any, sigma: float) -> float:

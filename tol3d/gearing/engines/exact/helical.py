@@ -20,12 +20,16 @@ from tol3d.gearing.engines.exact.foot import (
     grown,
     leaning,
     line_of_action,
+    promise,
     section,
     turn_to,
 )
 from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.spur import SHORTEST_TANGENT
 from tol3d.numerics.compiled import part, variant
+
+FREE_ENDS = 0.2  # mm; by which the ends of contact lines may lie elsewhere than nominal gears have them
+SQUARES = 2e-5  # mm; of leans of a milliradian over a face of 20 mm
 
 
 class HelicalTooth(NamedTuple):
@@ -144,13 +148,15 @@ def helical_turn(mate: HelicalTooth, gap: float, offset: float, at: Foot) -> flo
     return gap * mate.per_arm
 
 
-@variant(first_face, HelicalTooth)
-def helical_first_face(helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float, face: float) -> float:
-    """The end of the common face towards which all contact lines close as axes lean; the middle of parallel axes."""
-    own = helical_tooth
+@part
+def falling(own: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float) -> tuple[float, float]:
+    """Opening of the gap per height along the contact lines, nearly; and the tangent of both base circles [mm].
+
+    (0, 0) of parallel axes, and where there is no such tangent.
+    """
     square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
     if (pose.xz == 0.0 and pose.yz == 0.0) or square <= bases * bases:
-        return face
+        return 0.0, 0.0
     tangent, scale = math.sqrt(square - bases * bases), 1.0 / square
     ux, uy = scale * (pose.x * bases - sigma * pose.y * tangent), scale * (pose.y * bases + sigma * pose.x * tangent)
     # the driver's strings point against the mate's: its generators lean along -(-uy, ux)
@@ -159,8 +165,43 @@ def helical_first_face(helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Po
     gx = slope * (pose.xx * wx + pose.xy * wy) + pose.xz
     gy = slope * (pose.yx * wx + pose.yy * wy) + pose.yz
     gz = slope * (pose.zx * wx + pose.zy * wy) + pose.zz
-    falling = sigma * (mate.cosine * (uy * gx - ux * gy) + mate.rise * gz)
-    return max(own.low, mate.low - pose.z) if falling > 0.0 else min(own.high, mate.high - pose.z)
+    return sigma * (mate.cosine * (uy * gx - ux * gy) + mate.rise * gz), tangent
+
+
+@variant(first_face, HelicalTooth)
+def helical_first_face(helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float, face: float) -> float:
+    """The end of the common face towards which all contact lines close as axes lean; the middle of parallel axes."""
+    rate, tangent = falling(helical_tooth, mate, pose, sigma)
+    if tangent == 0.0:
+        return face
+    if rate > 0.0:
+        return max(helical_tooth.low, mate.low - pose.z)
+    return min(helical_tooth.high, mate.high - pose.z)
+
+
+@variant(promise, HelicalTooth)
+def helical_promise(
+    helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float, start: float, apart: float
+) -> tuple[float, float]:
+    """The opening by the lean at the lower end of a contact line, to first order; see stack_up/contact_lines.py.
+
+    A line beside the flanks stands off by at least twice its distance squared over the tangent. The leeway covers
+    mates that stand apart, whose lines end elsewhere, and what goes with squares of the lean.
+    """
+    own = helical_tooth
+    rate, tangent = falling(own, mate, pose, sigma)
+    if tangent == 0.0 or own.twist == 0.0:
+        return 0.0, 0.0
+    lean = sigma * own.twist
+    begin = max(own.begin, (tangent - mate.base * mate.end) / own.base)
+    first, last = (start - begin) / lean, (start - own.end) / lean
+    low = max(min(first, last), own.low, mate.low - pose.z)
+    high = min(max(first, last), own.high, mate.high - pose.z)
+    beside = max(low - high, 0.0) * abs(lean) * own.base
+    end = low if rate > 0.0 else high
+    order = rate * (end - sigma * own.rise * own.cosine * own.base * start) + 2.0 * beside * beside / tangent
+    leeway = abs(rate) * (FREE_ENDS + 2.0 * apart * own.cosine / abs(own.rise)) + SQUARES
+    return order, leeway + abs(rate) * 2.0 * beside * own.cosine / abs(own.rise)
 
 
 @part
