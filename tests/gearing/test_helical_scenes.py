@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gear_trials import measure_of, model_of_scene
+from gear_trials import drawn_trials, gear_columns, measure_of, model_of_scene
 from printing import printed
 
 from tol3d import check_scene
+from tol3d.cad.solids import measuring_strips
 from tol3d.errors import SceneError
 from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.engines.gaps import fcl_engine
 from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Model, Reading
 from tol3d.gearing.stack_up import stack_of
@@ -254,3 +256,24 @@ def test_check_prints_the_helix_and_sizes_over_balls(scene: Scene) -> None:
     said = printed(check_scene(scene))
     for label in ("normal module m_n [mm]", "helix angle β [°], hand", "overlap ratio ε_β", "total contact ratio ε_γ"):
         assert label in said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+def test_the_witness_agrees_within_its_chord_error(seed: int, tmp_path: Any) -> None:
+    """FCL on strips between generators of the CAD flanks, six random pairs with every tolerance."""
+    model = random_model(np.random.default_rng(70 + seed), tmp_path)
+    strips = {part.name: measuring_strips(part.gear, 96) for part in model.gears}
+    trials = drawn_trials(model, 1, 0, 6)
+    measures = [measure_of(model, "normal backlash"), measure_of(model, "arc")]
+    by_fcl, exact = (
+        gear_columns(model, engine, trials, measures) for engine in (fcl_engine(model, strips), ExactEngine(model))
+    )
+    chord = sum(own.chord_error for own in strips.values()) * 1e3
+    compared = 0
+    for name, values in exact.items():
+        if name.startswith("geometric:"):
+            compared += 1
+            # two contacts of two flanks; circumferential arcs are 1/(cos alpha cos beta) as long
+            assert np.abs(np.asarray(by_fcl[name]) - np.asarray(values)).max() < 3.2 * chord + 0.02, name
+    assert compared >= 2
