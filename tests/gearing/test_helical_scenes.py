@@ -10,8 +10,9 @@ from gear_trials import drawn_trials, gear_columns, measure_of, model_of_scene
 from printing import printed
 
 from tol3d import check_scene
+from tol3d.apps.records.from_scene import mesh_of
 from tol3d.cad.solids import measuring_strips
-from tol3d.errors import SceneError
+from tol3d.errors import InputError, SceneError
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import fcl_engine
 from tol3d.gearing.methods.analytic import analytic_values
@@ -242,6 +243,12 @@ def test_entries_that_know_no_helix_refuse_it(section: str, entry: str, words: s
     (path := tmp_path / "added.yaml").write_text(added.replace(f"{section}:\n", f"{section}:\n  {entry}\n", 1))
     with pytest.raises(SceneError, match=re.escape(words)):
         model_of_scene(path)
+
+
+def test_records_of_a_rig_know_spur_gears_alone(scene: Scene) -> None:
+    meshes = {mesh.name: mesh for mesh in model_of_scene(scene).meshes}
+    with pytest.raises(InputError, match="expected a mesh of two external spur gears, got none"):
+        mesh_of(meshes, "helical pair", None)
 
 
 def test_a_steep_helix_and_contact_by_overlap_alone_are_warned_of(tmp_path: Any) -> None:
