@@ -52,17 +52,15 @@ def test_twist_and_backlash_of_the_second_worked_pair() -> None:
     assert pair.normal_backlash == pytest.approx(131.556967e-3, abs=ROUNDED)
 
 
-def test_a_catalogue_pair_has_its_printed_backlash() -> None:
-    """23/67 at 30 deg with thickness allowances of a catalogue and js7: 0.1624 to 0.2734 mm on the working circle."""
-    loosest, tightest = 273.400e-3, 162.427e-3
-    for end, allowances, opened in ((loosest, None, 0.015), (tightest, None, -0.015)):
-        j_bn = {loosest: 218.071e-3, tightest: 129.629e-3}[end]
-        pair = base_pair(53.0 + opened, thinner=(0.0, 0.0))
-        thinner = (j_bn - pair.normal_backlash) / math.cos(ALPHA)
-        made = base_pair(53.0 + opened, thinner=(thinner, 0.0))
-        assert allowances is None
-        assert made.normal_backlash == pytest.approx(j_bn, abs=1e-9)
-        assert made.circumferential_backlash == pytest.approx(end, abs=1e-6)
+@pytest.mark.parametrize(
+    ("opened", "normal", "arc"), [(0.015, 218.071e-3, 273.400e-3), (-0.015, 129.629e-3, 162.427e-3)]
+)
+def test_arcs_of_a_catalogue_pair_are_the_printed_ones(opened: float, normal: float, arc: float) -> None:
+    """23/67 at 30 deg, c25 and js7: teeth as thin as give the normal backlash have the arc on the working circle."""
+    thinner = (normal - base_pair(53.0 + opened, thinner=(0.0, 0.0)).normal_backlash) / math.cos(ALPHA)
+    made = base_pair(53.0 + opened, thinner=(thinner, 0.0))
+    assert made.normal_backlash == pytest.approx(normal, abs=CLOSED_FORM)
+    assert made.circumferential_backlash == pytest.approx(arc, abs=1e-6)  # printed in um with three decimals
 
 
 @pytest.mark.parametrize(
