@@ -4,7 +4,7 @@
 
 Prints million trials a second, least processor time of several rounds: the working flanks brought to contact and the
 gap of the others, two contacts, of builds with parallel axes and of builds whose axes lean by up to 0.5 mrad. An
-external pair and two internal ones have the same teeth.
+external pair, a helical one and two internal ones have the same numbers of teeth.
 """
 
 import argparse
@@ -20,16 +20,21 @@ from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.model.model import GearPart
-from tol3d.gears import RIGHT, InternalGear, InternalPair, SpurGear, SpurPair
+from tol3d.gears import LEFT_HAND, RIGHT, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.numerics import frames
 
 Pair = SpurPair | InternalPair
 
 ALPHA = math.radians(20)
 INNER, WHEEL = SpurGear(27, 1.0, ALPHA, 10.0), SpurGear(79, 1.0, ALPHA, 9.0)
+SLANTED = (
+    SpurGear(27, 1.0, ALPHA, 10.0, helix_angle=math.radians(20)),
+    SpurGear(79, 1.0, ALPHA, 9.0, helix_angle=math.radians(20), hand=LEFT_HAND),
+)
 RING = InternalGear(79, 1.0, ALPHA, 9.0, addendum=0.8)
 PAIRS: Mapping[str, Pair] = {
     "external": SpurPair(INNER, WHEEL, 53.02),
+    "external, helical": SpurPair(*SLANTED, 56.42),
     "internal, driving pinion": InternalPair(INNER, RING, 25.98),
     "internal, driving ring": InternalPair(RING, INNER, 25.98),
 }
@@ -48,7 +53,7 @@ def built(pair: Pair, trials: int, leaning: float) -> tuple[Model, Build, np.nda
         shafts[..., :3, :3] = frames.about_vector(turn.reshape(-1, 3)).reshape(trials, 2, 3, 3)
     shafts[..., :3, 3] = 0.01 * rng.uniform(-1.0, 1.0, (trials, 2, 3))
     shafts[:, 1, :3, 3] += pair.wheel_origin
-    radii = np.array([gear.reference_radius for gear in (pair.pinion, pair.wheel)])
+    radii = np.array([gear.thickness_radius for gear in (pair.pinion, pair.wheel)])
     made = Build(
         world_from_shaft=shafts,
         centre=0.01 * rng.uniform(-1.0, 1.0, (trials, 2, 2)),

@@ -1,4 +1,7 @@
-"""The solid of an external spur gear: exact arcs and lines, flanks as splines over the roll angle."""
+"""The solid of an external spur or helical gear: exact arcs and lines, flanks as splines over the roll angle.
+
+A helical gear's transverse outline is swept along its helices, see twisted_solid.py.
+"""
 
 from collections.abc import Iterator
 
@@ -9,6 +12,7 @@ from tol3d.gears import LEFT, RIGHT, SpurGear
 from tol3d.parts.named_solid import NamedEdge, NamedSolid, extruded
 from tol3d.parts.spur_tooth import Tooth, corners_of, sides_of
 from tol3d.parts.tooth_edges import SHORTEST_EDGE, arc, circle
+from tol3d.parts.twisted_solid import twisted
 
 
 def build(gear: SpurGear) -> NamedSolid:
@@ -18,13 +22,31 @@ def build(gear: SpurGear) -> NamedSolid:
     "tooth k right flank", "... fillet" and, where the fillet begins below the base circle,
     "... radial"; "space k root" between teeth k and k+1, unless a full round leaves none;
     "bore" if there is one; "front" (+z) and "back". The u parameter of a flank's face is the roll
-    angle [rad], and it leaves the involute by at most FLANK_ERROR.
+    angle [rad], of a helical gear v is z, and it leaves the involute by at most FLANK_ERROR.
 
     Raises:
         GeometryError: no valid solid comes of it.
     """
-    bore = [[NamedEdge("bore", _hole(gear))]] if gear.bore > 0.0 else []
-    return extruded(list(_outline(gear)), bore, gear.face_width)
+    return _swept(gear, list(_outline(gear)), _bore(gear))
+
+
+def build_straight(gear: SpurGear) -> NamedSolid:
+    """The gear with its transverse section swept straight along z; of a spur gear the same as `build`.
+
+    Raises:
+        GeometryError: no valid solid comes of it.
+    """
+    return extruded(list(_outline(gear)), _bore(gear), gear.face_width)
+
+
+def _bore(gear: SpurGear) -> list[list[NamedEdge]]:
+    return [[NamedEdge("bore", _hole(gear))]] if gear.bore > 0.0 else []
+
+
+def _swept(gear: SpurGear, outline: list[NamedEdge], holes: list[list[NamedEdge]]) -> NamedSolid:
+    if gear.helix_angle:
+        return twisted(outline, holes, gear.face_width, gear.twist)
+    return extruded(outline, holes, gear.face_width)
 
 
 def build_tooth(gear: SpurGear) -> NamedSolid:
@@ -41,7 +63,7 @@ def build_tooth(gear: SpurGear) -> NamedSolid:
     tip = arc("tooth 0 tip", circle(gear, (0.0, 0.0), gear.tip_radius), corners[RIGHT, "tip"], corners[LEFT, "tip"])
     chord = BRepBuilderAPI_MakeEdge(corners[LEFT, "bottom"], corners[RIGHT, "bottom"]).Edge()
     outline = [*tooth.rising(), tip, *tooth.falling(), NamedEdge("cut", cq.Edge(chord))]
-    return extruded(outline, [], gear.face_width)
+    return _swept(gear, outline, [])
 
 
 # outline ------------------------------------------------------------------------------------------

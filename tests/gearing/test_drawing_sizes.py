@@ -171,7 +171,7 @@ def test_pins_that_touch_no_flank_are_refused(name: str, part: str, pins: str, w
         ({}, "either a span such as {span: 4}, or {pins: 3.5 mm}, got neither"),
         ({"span": 4, "pins": "4.2 mm"}, "either a span such as .* got span and pins"),
         ({"pins": "4.2 deg"}, r"measured.pins: expected a length"),
-        ({"balls": "4.2 mm"}, "measured.balls: .* write pins"),
+        ({"balls": "4.2 deg"}, "measured.balls: expected a length"),
         ("balls", "got balls"),
     ],
 )

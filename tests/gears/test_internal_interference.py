@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -43,11 +44,11 @@ def compare(seed: int, count: int) -> dict[str, int]:
     return found
 
 
-def spur(teeth: int, alpha: float, **factors: float) -> SpurGear:
+def spur(teeth: int, alpha: float, **factors: Any) -> SpurGear:
     return SpurGear(teeth, 1.0, math.radians(alpha), 5.0, **factors)
 
 
-def internal(teeth: int, alpha: float, **factors: float) -> InternalGear:
+def internal(teeth: int, alpha: float, **factors: Any) -> InternalGear:
     return InternalGear(teeth, 1.0, math.radians(alpha), 5.0, **factors)
 
 

@@ -131,6 +131,23 @@ def shoulders() -> tuple[str, str]:
     return shoulder, by_data_sheet
 
 
+HELICAL = """\
+scene: helical pair
+parts:
+  a: {kind: helical_gear, teeth: 20, module: 2 mm, pressure_angle: 20 deg, helix_angle: 15 deg, hand: right,
+    face_width: 20 mm, profile_shift: 0.1, addendum: 1, dedendum: 1.25, root_fillet: 0.5 mm, bore: 10 mm,
+    expansion: 11.5e-6 1/K}
+  b: {kind: helical_gear, teeth: 41, module: 2 mm, helix_angle: 15 deg, hand: left, face_width: 20 mm}
+tolerances:
+  thickness: {kind: tooth_thickness, of: b, measured: {balls: 3.5 mm},
+    distribution: {kind: normal, lower: -90 um, upper: -60 um}}
+moves:
+  pair: {kind: mesh, driver: a, driven: b, centre_distance: 63.4 mm}
+measures:
+  play: {kind: normal_backlash, of: pair}
+"""
+
+
 def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
     known = fields_within(Geared)
     assert len({model for model, _ in known}) >= 24  # scene, study, 2 parts, 9 tolerances, 7 laws, mesh, 3 measures, …
@@ -161,6 +178,7 @@ def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
             )
         )
     )
+    said |= set(fields_said(load(tmp_path, HELICAL, GEARS)))
     heights = ", ".join(f"{name}: {{kind: tooth_thickness, of: {name[0]}, {TIGHT}}}" for name in ("a1", "b1"))
     both = "{between: [a1, b1], rho: 0.5}, {between: [a1, b1], matrix: [[1, 0.5], [0.5, 1]]}"
     said |= set(fields_said(load(tmp_path, f"{SMALL}tolerances: {{{heights}}}\ncorrelations: [{both}]\n", GEARS)))

@@ -9,13 +9,17 @@ from tol3d.gearing.grammar.checks import (
     bearings_off_shafts,
     carried_again,
     fits_of_other_distances,
+    forces_of_helices,
     forms_of_two_shapes,
     general_distances,
+    helices_elsewhere,
     implausible_angles,
     implausible_displacements,
     implausible_faces,
     implausible_shafts,
+    readings_of_helices,
     shafts_thicker_than_hubs,
+    steep_helices,
 )
 from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.gearing.grammar.published import PublishedTrains
@@ -39,8 +43,9 @@ DISTANCE: Final = "write centre_distance, with {din_3964: js7}"
 THICKNESS: Final = "write tooth_thickness, with {din_3967: cd25} or its allowances"
 SPAN, PINS = (f"write tooth_thickness with measured: {{{word}: …}}" for word in ("span", "pins"))
 BACKLASH: Final = "write normal_backlash, circumferential_backlash, angular_backlash or, of a train, lost_motion"
-ANY_GEAR: Final = "write spur_gear, bevel_gear or, of a ring, internal_gear"
-NO_HELIX: Final = "helical, spiral, hypoid and worm gears are not supported: docs/limits.md"
+ANY_GEAR: Final = "write spur_gear, helical_gear, bevel_gear or, of a ring, internal_gear"
+NO_HELIX: Final = "spiral, hypoid and worm gears are not supported: docs/limits.md"
+HELIX_SIGN: Final = "write helix_angle, and hand: right or left"
 
 OTHER_KINDS: Final = (
     *((word, RUN_OUT) for word in ("F_r", "Fr", "gear_run_out", "radial_run_out")),
@@ -56,7 +61,7 @@ OTHER_KINDS: Final = (
     ("f_fa", "write profile_form"),
     ("f_sigma_delta", "write axis_in_plane"),
     ("f_sigma_beta", "write axis_out_of_plane"),
-    *((word, NO_HELIX) for word in ("helical_gear", "worm", "worm_gear", "hypoid_gear", "spiral_bevel_gear")),
+    *((word, NO_HELIX) for word in ("worm", "worm_gear", "hypoid_gear", "spiral_bevel_gear")),
     *((word, ANY_GEAR) for word in ("gear", "pinion", "cylindrical_gear")),
     *((word, BACKLASH) for word in ("backlash", "slop", "gear_play", "free_play")),
     *((word, "write mesh, or bevel_mesh") for word in ("gear_pair", "gear_mesh", "gears", "meshing")),
@@ -67,7 +72,11 @@ OTHER_KINDS: Final = (
     *((word, "write uniform") for word in ("rectangular", "rectangle", "flat", "equal")),
     *((word, "write normal") for word in ("gauss", "gaussian")),
 )
-OTHER_KEYS: Final = (("balls", "write pins: over spur teeth balls of the same diameter give the same size"),)
+OTHER_KEYS: Final = (
+    ("normal_module", "write module: of a helical gear it is the normal module"),
+    ("transverse_module", "write module: the normal one, m_t cos(helix_angle)"),
+    *((word, HELIX_SIGN) for word in ("helix", "helix_direction", "beta", "spiral_angle", "lead")),
+)
 
 GEARING: Final = Mechanism(
     name="gearing",
@@ -75,7 +84,7 @@ GEARING: Final = Mechanism(
     tolerances=(*_kinds(ToleranceEntry, tolerances), TemperatureSpec),
     moves=_kinds(MoveSpec),
     measures=_kinds(MeasureEntry),
-    checks=(carried_again, forms_of_two_shapes),
+    checks=(carried_again, forms_of_two_shapes, helices_elsewhere, readings_of_helices, forces_of_helices),
     warnings=(
         implausible_displacements,
         implausible_faces,
@@ -84,6 +93,7 @@ GEARING: Final = Mechanism(
         fits_of_other_distances,
         bearings_off_shafts,
         shafts_thicker_than_hubs,
+        steep_helices,
     ),
     general=(general_distances,),
     other_kinds=OTHER_KINDS,

@@ -70,7 +70,7 @@ class MeshBuild:
         """Sum over both gears by which a tooth is thicker along its normal than the nominal one [mm]."""
         gears = (self.mesh.pair.pinion, self.mesh.pair.wheel)
         return sum(
-            2 * gear.base_radius * float(self._placed.flank_turn[0, seat])
+            2 * gear.section_arm * float(self._placed.flank_turn[0, seat])
             + 2 * float(self._placed.flank_offset[0, seat])
             for gear, seat in zip(gears, self._seats, strict=True)
         )

@@ -7,7 +7,7 @@ of teeth (`tooth_measures`) and classes of flanks (`iso1328`) beside them. No sc
 
 from tol3d.gears.bevel_gear import BevelGear, pitch_angles
 from tol3d.gears.bevel_pair import BevelPair
-from tol3d.gears.flank import LEFT, RIGHT, Flank, opposite
+from tol3d.gears.flank import LEFT, LEFT_HAND, RIGHT, RIGHT_HAND, Flank, Hand, opposite
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_pair import InternalPair
 from tol3d.gears.involute import inverse_involute, involute
@@ -19,14 +19,17 @@ from tol3d.gears.undercut import RACK_ADDENDUM
 
 __all__ = [
     "LEFT",
+    "LEFT_HAND",
     "RACK_ADDENDUM",
     "RIGHT",
+    "RIGHT_HAND",
     "BevelGear",
     "BevelPair",
     "Displaced",
     "Flank",
     "Gear",
     "GearPair",
+    "Hand",
     "InternalGear",
     "InternalPair",
     "SpurGear",

@@ -127,6 +127,11 @@ class BevelGear(ToothedGear):
 
     # cone distances and circles -----------------------------------------------------------------
 
+    @property
+    def twist(self) -> float:
+        """0 [rad/mm]: the teeth are straight."""
+        return 0.0
+
     @cached_property
     def outer_cone_distance(self) -> float:
         """R_e = m z/(2 sin delta) [mm], from the apex to the heel along the pitch cone."""

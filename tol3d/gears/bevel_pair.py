@@ -69,6 +69,11 @@ class BevelPair(RollingPair):
             )
 
     @property
+    def base_helix_cosine(self) -> float:
+        """1: the teeth are straight."""
+        return 1.0
+
+    @property
     def working_pressure_angle(self) -> float:
         """alpha_w = alpha [rad]: with one apex the pitch cones are the working ones."""
         return self.pinion.pressure_angle

@@ -1,34 +1,39 @@
-"""Common base of external and internal involute spur gears: circles, tooth thickness, flanks.
+"""Common base of external and internal involute cylindrical gears: circles, helix, tooth thickness, flanks.
 
 Formulas are those of ISO 21771-1 with the sign of the number of teeth written out: +1 outside, -1 inside. Users and
-properties have positive numbers.
+properties have positive numbers. Module, pressure angle and tooth thickness are those of the normal section; circles,
+rolls and points those of the transverse section at z = 0, in which a helical gear is a spur gear. At the height z that
+section is turned by `twist` z. Of a spur gear both sections are one, to the last bit.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 
 from tol3d.errors import GeometryError
-from tol3d.gears.flank import Flank
+from tol3d.gears.flank import LEFT_HAND, RIGHT_HAND, Flank, Hand
 from tol3d.gears.involute import involute
 from tol3d.gears.toothed_gear import ToothedGear
 from tol3d.numerics.arrays import Array
 
 ISO53_ROOT_FILLET: Final = 0.38  # of the module; fillet of the standard basic rack, ISO 53:1998, profile A
 FULL_ROUND_MARGIN: Final = 1e-9  # mm; two fillets of a space may touch, not overlap
+STEEPEST_HELIX: Final = math.radians(60)  # of a gear on parallel axes; steeper ones are worms
 
 
 @dataclass(frozen=True)
 class CylindricalGear(ToothedGear):
-    """A spur gear, external or internal; arguments as there. Lengths in mm, angles in rad."""
+    """A spur or helical gear, external or internal; arguments as there. Lengths in mm, angles in rad."""
 
     profile_shift: float = 0.0
     addendum: float = 1.0
     dedendum: float = 1.25
     root_fillet: float | None = None
+    helix_angle: float = field(default=0.0, kw_only=True)
+    hand: Hand = field(default=RIGHT_HAND, kw_only=True)
 
     @property
     def iso_sign(self) -> int:
@@ -42,26 +47,89 @@ class CylindricalGear(ToothedGear):
                 f"(the full round of the space), got {self.root_fillet:g} mm"
             )
 
+    def _refuse_helix(self) -> None:
+        if not 0.0 <= self.helix_angle <= STEEPEST_HELIX:
+            raise GeometryError(
+                f"helix_angle: expected 0 to {math.degrees(STEEPEST_HELIX):g} deg, "
+                f"got {math.degrees(self.helix_angle):g} deg; the hand gives its sense"
+            )
+        if self.hand not in (RIGHT_HAND, LEFT_HAND):
+            raise GeometryError(f"hand: expected 1 for a right-hand helix or -1 for a left-hand one, got {self.hand}")
+        if self.face_width > self.lead / 2:
+            raise GeometryError(
+                f"face_width: expected at most half of the helix's lead, {self.lead / 2:.4f} mm, "
+                f"got {self.face_width:g} mm"
+            )
+
+    # helix ------------------------------------------------------------------------------------
+
+    @property
+    def transverse_module(self) -> float:
+        """m_t = m_n/cos beta [mm]."""
+        return self.module / math.cos(self.helix_angle)
+
+    @cached_property
+    def transverse_pressure_angle(self) -> float:
+        """alpha_t [rad], tan alpha_t = tan alpha_n/cos beta."""
+        if self.helix_angle == 0.0:
+            return self.pressure_angle
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+
+    @cached_property
+    def base_helix_angle(self) -> float:
+        """beta_b [rad], sin beta_b = sin beta cos alpha_n."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
+
+    @cached_property
+    def base_helix_cosine(self) -> float:
+        """cos beta_b: of a length in the transverse section along the line of action, the part along the normal."""
+        return math.cos(self.base_helix_angle)
+
+    @property
+    def twist(self) -> float:
+        """kappa = h tan beta/r [rad/mm]: turn of the transverse section per height; 0 of a spur gear."""
+        return self.hand * math.tan(self.helix_angle) / self.reference_radius
+
+    @property
+    def lead(self) -> float:
+        """p_z = pi d/tan beta [mm]; inf of a spur gear."""
+        return 2 * math.pi / abs(self.twist) if self.helix_angle else math.inf
+
     # circles ----------------------------------------------------------------------------------
+
+    @property
+    def reference_radius(self) -> float:
+        """r = m_t z/2 [mm]."""
+        return self.transverse_module * self.teeth / 2
+
+    @property
+    def reference_diameter(self) -> float:
+        """d = m_t z [mm]."""
+        return self.transverse_module * self.teeth
 
     @cached_property
     def base_radius(self) -> float:
-        """r_b = r cos alpha [mm]."""
-        return self.reference_radius * math.cos(self.pressure_angle)
+        """r_b = r cos alpha_t [mm]."""
+        return self.reference_radius * math.cos(self.transverse_pressure_angle)
 
     @property
     def section_arm(self) -> float:
-        """r_b [mm], the same in every section."""
-        return self.base_radius
+        """r_b cos beta_b [mm]: a turn by one over it moves a flank by 1 mm along its normal, in every section."""
+        return self.base_radius * self.base_helix_cosine
 
     @property
     def thickness_radius(self) -> float:
-        """r [mm]: the tooth thickness is an arc at the reference circle."""
-        return self.reference_radius
+        """r cos beta [mm]: the tooth thickness is an arc of the normal section at the reference circle."""
+        return self.reference_radius * math.cos(self.helix_angle)
+
+    @property
+    def deviation_radius(self) -> float:
+        """r cos beta [mm], as of the thickness."""
+        return self.thickness_radius
 
     @property
     def pitch_angle(self) -> float:
-        """0 [rad]: a spur gear is a cylinder."""
+        """0 [rad]: the gear is a cylinder."""
         return 0.0
 
     @property
@@ -71,7 +139,7 @@ class CylindricalGear(ToothedGear):
 
     @property
     def tip_radius(self) -> float:
-        """r_a = r + m (h_a* + x) [mm], inside r - m (h_a* + x)."""
+        """r_a = r + m_n (h_a* + x) [mm], inside r - m_n (h_a* + x)."""
         return self.reference_radius + self.iso_sign * self.module * (self.addendum + self.profile_shift)
 
     @property
@@ -81,7 +149,7 @@ class CylindricalGear(ToothedGear):
 
     @property
     def root_radius(self) -> float:
-        """r_f = r - m (h_f* - x) [mm], inside r + m (h_f* - x)."""
+        """r_f = r - m_n (h_f* - x) [mm], inside r + m_n (h_f* - x)."""
         return self.reference_radius - self.iso_sign * self.module * (self.dedendum - self.profile_shift)
 
     @property
@@ -91,47 +159,61 @@ class CylindricalGear(ToothedGear):
 
     @property
     def base_pitch(self) -> float:
-        """p_b = pi m cos alpha [mm]."""
+        """p_bn = pi m_n cos alpha_n [mm], along the normal."""
         return math.pi * self.module * math.cos(self.pressure_angle)
+
+    @property
+    def transverse_base_pitch(self) -> float:
+        """p_bt = p_bn/cos beta_b [mm], along the line of action of a transverse section."""
+        return self.base_pitch / self.base_helix_cosine
 
     # tooth thickness ----------------------------------------------------------------------------
 
     @property
     def tooth_thickness(self) -> float:
-        """s = m (pi/2 + 2 x tan alpha) + deviation, arc at the reference circle [mm]."""
+        """s_n = m_n (pi/2 + 2 x tan alpha_n) + deviation, arc of the normal section at the reference circle [mm]."""
         nominal = self.module * (math.pi / 2 + 2 * self.profile_shift * math.tan(self.pressure_angle))
         return nominal + self.tooth_thickness_deviation
 
     @cached_property
     def base_half_angle(self) -> float:
-        """Half the angle [rad] that a tooth takes at the base circle: s/(2 r) + inv alpha, inside s/(2 r) - inv alpha.
+        """Half the angle [rad] that a tooth takes at the base circle: s_t/(2 r) + inv alpha_t, inside less inv alpha_t.
 
-        Flanks of an internal gear may meet before that: it is less than 0 then.
+        s_t = s_n/cos beta is the arc in the transverse section. Flanks of an internal gear may meet before that: it is
+        less than 0 then.
         """
-        return self.tooth_thickness / (2 * self.reference_radius) + self.iso_sign * involute(self.pressure_angle)
+        half = self.tooth_thickness / (2 * self.thickness_radius)
+        return half + self.iso_sign * involute(self.transverse_pressure_angle)
 
     def pressure_angle_at(self, radius: float) -> float:
         """alpha_y with cos alpha_y = r_b / radius [rad]; 0 at and below the base circle."""
         return math.acos(min(1.0, self.base_radius / radius))
 
     def thickness_at(self, radius: float) -> float:
-        """Tooth thickness as an arc [mm] on the circle of that radius (radial flank below the base)."""
+        """Tooth thickness as a transverse arc [mm] on the circle of that radius (radial flank below the base)."""
         return 2 * radius * (self.base_half_angle - self.iso_sign * involute(self.pressure_angle_at(radius)))
 
     @property
     def tip_thickness(self) -> float:
-        """s_a, arc at the tip circle [mm]."""
+        """s_a, transverse arc at the tip circle [mm]."""
         return self.thickness_at(self.tip_radius)
 
     @property
+    def normal_tip_thickness(self) -> float:
+        """s_na = s_a cos beta_a [mm], tan beta_a = tan beta d_a/d."""
+        return self.tip_thickness * math.cos(
+            math.atan(math.tan(self.helix_angle) * self.tip_radius / self.reference_radius)
+        )
+
+    @property
     def section_thickness(self) -> float:
-        """s [mm], the same in every section."""
+        """s_n [mm], the same in every section."""
         return self.tooth_thickness
 
     @property
     def section_tip(self) -> float:
-        """s_a r/r_a [mm]: the arc at the reference circle that is as wide an angle as the tooth at its tip."""
-        return self.tip_thickness * self.reference_radius / self.tip_radius
+        """s_a r cos beta/r_a [mm]: the arc at the reference circle that is as wide an angle as the tooth at its tip."""
+        return self.tip_thickness * self.thickness_radius / self.tip_radius
 
     # roll -----------------------------------------------------------------------------------------
 

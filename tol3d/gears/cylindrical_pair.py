@@ -1,7 +1,9 @@
-"""Common base of two spur gears on parallel axes, internal or not: angles, backlash, path of contact.
+"""Common base of two cylindrical gears on parallel axes, internal or not: angles, backlash, path of contact.
 
 Exact for rigid involute teeth. Sources: ISO 21771-1:2024, 5.3 (pair geometry) and 5.6 (backlash), whose formulas hold
-for internal gears with their teeth, radii and centre distance counted negative.
+for internal gears with their teeth, radii and centre distance counted negative. A slice of a helical pair at any height
+is the spur pair of its transverse section, turned: lengths along the line of action there are 1/cos(beta_b) of those
+along the normals.
 """
 
 import math
@@ -54,7 +56,7 @@ class CylindricalPair(RollingPair):
 
     @cached_property
     def working_pressure_angle(self) -> float:
-        """alpha_w with cos alpha_w = (r_b1 + r_b2)/a [rad]."""
+        """alpha_wt with cos alpha_wt = (r_b1 + r_b2)/a [rad], in the transverse section."""
         return math.acos(self.iso_sign * self.base_radii / self.centre_distance)
 
     @property
@@ -62,6 +64,16 @@ class CylindricalPair(RollingPair):
         """r_w of pinion and wheel [mm]: r_b / cos alpha_w."""
         cos = math.cos(self.working_pressure_angle)
         return self.pinion.base_radius / cos, self.wheel.base_radius / cos
+
+    @property
+    def base_helix_cosine(self) -> float:
+        """cos beta_b, the same of both gears; 1 of spur gears."""
+        return self.pinion.base_helix_cosine
+
+    @property
+    def common_face(self) -> float:
+        """Width [mm] on which both gears have teeth; their face centres lie in one plane."""
+        return min(self.pinion.face_width, self.wheel.face_width)
 
     # world --------------------------------------------------------------------------------------
 
@@ -95,13 +107,14 @@ class CylindricalPair(RollingPair):
 
     @cached_property
     def zero_backlash_involute(self) -> float:
-        """inv alpha_w at which the teeth would touch on both flanks.
+        """inv alpha_wt at which the teeth would touch on both flanks.
 
         From tooth + tooth = pitch on the working circle:
-        inv alpha + [s1 + s2 - pi m] cos alpha / (2 (r_b1 + r_b2)).
+        inv alpha_t + [s_t1 + s_t2 - pi m_t] cos alpha_t / (2 (r_b1 + r_b2)).
         """
-        alpha = self.pinion.pressure_angle
+        alpha = self.pinion.transverse_pressure_angle
         thicker = self.pinion.tooth_thickness + self.wheel.tooth_thickness - math.pi * self.pinion.module
+        thicker /= math.cos(self.pinion.helix_angle)
         return involute(alpha) + thicker * math.cos(alpha) / (2 * self.base_radii)
 
     @property
@@ -118,14 +131,15 @@ class CylindricalPair(RollingPair):
     def normal_backlash(self) -> float:
         """j_bn [mm], shortest distance of the non-working flanks; negative: the teeth interfere.
 
-        2 (r_b1 + r_b2)(inv alpha_w - inv alpha_w0), exact for parallel axes.
+        2 (r_b1 + r_b2) cos beta_b (inv alpha_wt - inv alpha_w0), exact for parallel axes.
         """
-        return 2 * self.base_radii * (involute(self.working_pressure_angle) - self.zero_backlash_involute)
+        transverse = 2 * self.base_radii * (involute(self.working_pressure_angle) - self.zero_backlash_involute)
+        return transverse * self.base_helix_cosine
 
     @property
     def circumferential_backlash(self) -> float:
-        """j_wt = j_bn / cos alpha_w, free arc on the working pitch circles [mm]."""
-        return self.normal_backlash / math.cos(self.working_pressure_angle)
+        """j_wt = j_bn / (cos alpha_wt cos beta_b), free arc on the working pitch circles [mm]."""
+        return self.normal_backlash / (math.cos(self.working_pressure_angle) * self.base_helix_cosine)
 
     @property
     def radial_backlash(self) -> float:
@@ -137,17 +151,17 @@ class CylindricalPair(RollingPair):
 
     @property
     def angular_backlash(self) -> tuple[float, float]:
-        """Free turn of the pinion (wheel held) and of the wheel (pinion held) [rad]: j_bn / r_b."""
-        return self.normal_backlash / self.pinion.base_radius, self.normal_backlash / self.wheel.base_radius
+        """Free turn of the pinion (wheel held) and of the wheel (pinion held) [rad]: j_bn / (r_b cos beta_b)."""
+        return self.normal_backlash / self.pinion.section_arm, self.normal_backlash / self.wheel.section_arm
 
     def from_normal(self, normal: float) -> "Backlashes":
         """A normal backlash [mm] of other teeth at this centre distance, in all the words of drawings."""
-        working = self.working_pressure_angle
-        tight = involute(working) - normal / (2 * self.base_radii)
-        radial = math.nan
+        working, transverse = self.working_pressure_angle, normal / self.base_helix_cosine
+        tight, radial = involute(working) - transverse / (2 * self.base_radii), math.nan
         if tight >= 0.0:
             radial = self.iso_sign * self.centre_distance - self.base_radii / math.cos(inverse_involute(tight))
-        return Backlashes(normal, normal / math.cos(working), normal / math.cos(self.pinion.pressure_angle), radial)
+        reference = transverse / math.cos(self.pinion.transverse_pressure_angle)
+        return Backlashes(normal, transverse / math.cos(working), reference, radial)
 
     # path of contact ------------------------------------------------------------------------------
 
@@ -160,32 +174,50 @@ class CylindricalPair(RollingPair):
 
     @property
     def contact_ratio(self) -> float:
-        """epsilon_alpha: length of the path of contact over the base pitch."""
+        """epsilon_alpha: length of the path of contact over the transverse base pitch."""
         return self.pinion.iso_sign * (self.pinion.tip_roll - self.start_roll) / self.pinion.angular_pitch
+
+    @property
+    def overlap_ratio(self) -> float:
+        """epsilon_beta = b sin beta/(pi m_n) of the common face; 0 of spur gears."""
+        return self.common_face * math.sin(self.pinion.helix_angle) / (math.pi * self.pinion.module)
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """epsilon_gamma = epsilon_alpha + epsilon_beta: contact lines in contact, floor of it or one more."""
+        return self.contact_ratio + self.overlap_ratio
 
     @property
     def active_azimuths(self) -> tuple[float, float]:
         """A tooth at azimuth psi touches at the roll t = alpha_w + eta_b - sigma psi.
 
-        Of a driving ring it is alpha_w - eta_b + sigma psi.
+        Of a driving ring it is alpha_w - eta_b + sigma psi. The azimuth is that of the tooth at z = 0; a helical one
+        stands kappa z further on at other heights.
         """
+        return self._azimuths_over(self.common_face)
+
+    def _azimuths_over(self, face: float) -> tuple[float, float]:
         sign = self.pinion.iso_sign
         at_pitch = sign * self.working_pressure_angle + self.pinion.base_half_angle
-        return at_pitch - sign * self.pinion.tip_roll, at_pitch - sign * self.start_roll
+        leaning = abs(self.pinion.twist) * face / 2
+        return at_pitch - sign * self.pinion.tip_roll - leaning, at_pitch - sign * self.start_roll + leaning
 
     @property
     def touching_azimuths(self) -> tuple[float, float]:
-        """The path of contact, and CONTACT_MARGIN."""
-        lowest, highest = self.active_azimuths
+        """The path of contact over the pinion's face, along which the wheel may shift, and CONTACT_MARGIN."""
+        lowest, highest = self._azimuths_over(self.pinion.face_width)
         margin = CONTACT_MARGIN * self.pinion.angular_pitch
         return lowest - margin, highest + margin
 
     def _refuse_short_contact(self) -> None:
-        if self.contact_ratio < 1.0:
-            raise GeometryError(
-                f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "
-                f"{self.centre_distance:g} mm: the teeth lose contact"
-            )
+        if self.contact_ratio + self.overlap_ratio >= 1.0:
+            return
+        words = f"contact ratio {self.contact_ratio:.4f}"
+        if self.overlap_ratio:
+            words = f"total {words[:-6]}{self.total_contact_ratio:.4f} ({self.contact_ratio:.4f} over the profile)"
+        raise GeometryError(
+            f"{words} is below 1 at centre distance {self.centre_distance:g} mm: the teeth lose contact"
+        )
 
     def _along(self, working: Array, displaced: Displaced) -> Array:
         """Half of the gap of the teeth along the line of action [mm], (rows,), at working pressure angles [rad]."""

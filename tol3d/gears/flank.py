@@ -1,4 +1,4 @@
-"""Side of a tooth: the sign sigma that every formula of tol3d shares."""
+"""Side of a tooth and hand of a helix: the signs sigma and h that every formula of tol3d shares."""
 
 from typing import Final, Literal
 
@@ -7,6 +7,12 @@ Flank = Literal[1, -1]
 
 RIGHT: Final[Flank] = 1
 LEFT: Final[Flank] = -1
+
+Hand = Literal[1, -1]
+"""h: +1 a right-hand helix, whose teeth lean to the right, seen from outside with the axis upright; -1 a left one."""
+
+RIGHT_HAND: Final[Hand] = 1
+LEFT_HAND: Final[Hand] = -1
 
 
 def opposite(flank: Flank) -> Flank:

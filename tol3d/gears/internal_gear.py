@@ -49,6 +49,8 @@ class InternalGear(CylindricalGear):
 
     def __post_init__(self) -> None:
         self._refuse_sizes({"pressure_angle": PRESSURE_ANGLES})
+        if self.helix_angle != 0.0:
+            raise GeometryError("helix_angle: internal helical gears are not supported, only external ones are")
         self._refuse_circles()
         self._refuse_teeth()
         if not self.rim_diameter > self.root_diameter:

@@ -46,6 +46,10 @@ class InternalPair(CylindricalPair):
             count = "two" if isinstance(self.wheel, InternalGear) else "none"
             raise GeometryError(f"an internal pair needs one internal gear and one external, got {count} of the first")
         self._refuse_unlike()
+        if self.inner.helix_angle:
+            raise GeometryError(
+                "a helical gear meshes with external gears only: internal helical gears are not supported"
+            )
         if self.ring.teeth <= self.inner.teeth:
             raise GeometryError(
                 f"the internal gear needs more teeth than the gear inside it: got {self.ring.teeth} and "

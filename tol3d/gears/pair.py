@@ -75,6 +75,10 @@ class Gear(Protocol):
         """delta [rad] of the pitch cone, 0 for a cylinder."""
 
     @property
+    def twist(self) -> float:
+        """kappa [rad/mm], by which a transverse section is turned per height; 0 but for helical gears."""
+
+    @property
     def base_pitch(self) -> float:
         """Distance [mm] of neighbouring flanks along their normal, in that section."""
 
@@ -121,7 +125,11 @@ class GearPair(Protocol):
 
     @property
     def working_pressure_angle(self) -> float:
-        """alpha_w [rad]."""
+        """alpha_w [rad], of helical gears alpha_wt in the transverse section."""
+
+    @property
+    def base_helix_cosine(self) -> float:
+        """cos beta_b: of a length along the line of action of a transverse section the part along the normal."""
 
     @property
     def working_radii(self) -> tuple[float, float]:

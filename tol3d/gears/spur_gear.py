@@ -1,4 +1,4 @@
-"""One external involute spur gear: allowed sizes, root fillet, undercut."""
+"""One external involute spur or helical gear: allowed sizes, root fillet, undercut."""
 
 import math
 from dataclasses import dataclass
@@ -36,20 +36,22 @@ def fillet_azimuth(radius: float, root_radius: float, base_radius: float, base_h
 
 @dataclass(frozen=True)
 class SpurGear(CylindricalGear):
-    """An external spur gear by the words of ISO 21771-1; lengths in mm, angles in rad.
+    """An external spur or helical gear by the words of ISO 21771-1; lengths in mm, angles in rad.
 
     Args:
         teeth: number of teeth z, at least 3.
-        module: m [mm].
-        pressure_angle: alpha at the reference circle [rad].
+        module: m [mm], of a helical gear the normal module m_n.
+        pressure_angle: alpha at the reference circle [rad], of a helical gear alpha_n in the normal section.
         face_width: b [mm].
         profile_shift: coefficient x, in modules.
         addendum, dedendum: factors h_a*, h_f* of the module.
         root_fillet: radius [mm] of the arc between flank and root circle; None takes the 0.38 m
             of ISO 53, or the full round of the space where that is smaller.
         bore: diameter [mm]; 0 means none.
-        tooth_thickness_deviation: added to the nominal arc at the reference circle [mm],
-            half on each flank; positive is thicker.
+        tooth_thickness_deviation: added to the nominal arc at the reference circle [mm], of a helical gear in the
+            normal section (E_sn), half on each flank; positive is thicker.
+        helix_angle: beta at the reference cylinder [rad]; 0 is a spur gear.
+        hand: of the helix, RIGHT_HAND or LEFT_HAND.
 
     Raises:
         GeometryError: the gear cannot be made; the text carries the numbers.
@@ -69,6 +71,7 @@ class SpurGear(CylindricalGear):
 
     def _refuse_unmakeable(self) -> None:
         self._refuse_sizes({"pressure_angle": PRESSURE_ANGLES})
+        self._refuse_helix()
         if not self.root_radius > 0.0 or not self.tip_radius > self.root_radius:
             raise GeometryError(
                 f"the tip circle ({self.tip_diameter:.4f} mm) must lie outside the root circle "
@@ -151,8 +154,10 @@ class SpurGear(CylindricalGear):
 
     @property
     def undercut_limit_shift(self) -> float:
-        """Smallest profile shift without undercut by a rack of addendum 1: x = 1 - z sin^2(alpha)/2."""
-        return RACK_ADDENDUM - self.teeth * math.sin(self.pressure_angle) ** 2 / 2
+        """Smallest profile shift without undercut by a rack of addendum 1: x = 1 - z sin^2(alpha_t)/(2 cos beta)."""
+        return RACK_ADDENDUM - self.teeth * math.sin(self.transverse_pressure_angle) ** 2 / (
+            2 * math.cos(self.helix_angle)
+        )
 
     @cached_property
     def undercut_radius(self) -> float:
@@ -161,7 +166,9 @@ class SpurGear(CylindricalGear):
             return self.base_radius
         depth = self.module * (RACK_ADDENDUM - self.profile_shift)
         ends = (self.base_radius, self.tip_radius)
-        return rack_undercut_radius(self.pressure_angle, self.reference_radius, depth, ends, self.pressure_angle_at)
+        return rack_undercut_radius(
+            self.transverse_pressure_angle, self.reference_radius, depth, ends, self.pressure_angle_at
+        )
 
     def refuse_undercut(self, start: float, name: str, where: str) -> None:
         """Raise where a rack of addendum 1 would cut into the flank in use.

@@ -1,4 +1,4 @@
-"""Two external spur gears on parallel axes: their world, positions, interference.
+"""Two external spur or helical gears on parallel axes: their world, positions, interference.
 
 Exact for rigid involute teeth. Sources: ISO 21771-1:2024, 5.3 (pair geometry) and 5.6 (backlash).
 """
@@ -11,10 +11,24 @@ from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_pair import CylindricalPair
-from tol3d.gears.flank import Flank
-from tol3d.gears.pair import Displaced
+from tol3d.gears.flank import RIGHT_HAND, Flank
+from tol3d.gears.pair import SAME_LENGTH, Displaced
 from tol3d.gears.spur_gear import SpurGear
 from tol3d.numerics.arrays import Array
+
+
+def crossed_axes(pinion: SpurGear, wheel: SpurGear) -> str:
+    """Reason why two external gears do not run together on parallel axes, by their helices; "" if they do."""
+    first, second = pinion.helix_angle, wheel.helix_angle
+    if not math.isclose(first, second, rel_tol=SAME_LENGTH):
+        angles = " and ".join(f"{math.degrees(angle):g} deg" for angle in (first, second))
+        return f"gears on parallel axes need the same helix_angle, got {angles}: the axes would cross"
+    if first and pinion.hand == wheel.hand:
+        hand = "right" if pinion.hand == RIGHT_HAND else "left"
+        return (
+            f"external helical gears on parallel axes need opposite hands, got {hand} and {hand}: the axes would cross"
+        )
+    return ""
 
 
 @dataclass(frozen=True)
@@ -22,7 +36,8 @@ class SpurPair(CylindricalPair):
     """Pinion (driver) and wheel (driven) at a centre distance [mm].
 
     Raises:
-        GeometryError: modules or pressure angles differ, or the base circles do not leave room.
+        GeometryError: modules, pressure angles or helix angles differ, the hands are alike, or the base circles do not
+            leave room.
 
     >>> alpha = math.radians(20)
     >>> pinion = SpurGear(28, 2.5, alpha, 20.0)
@@ -37,6 +52,8 @@ class SpurPair(CylindricalPair):
 
     def __post_init__(self) -> None:
         self._refuse_unlike()
+        if crossed := crossed_axes(self.pinion, self.wheel):
+            raise GeometryError(crossed)
         if self.centre_distance <= self.base_radii:
             raise GeometryError(
                 f"centre distance {self.centre_distance:g} mm: the teeth interfere, the base circles alone "
@@ -113,7 +130,10 @@ class SpurPair(CylindricalPair):
     # positions --------------------------------------------------------------------------------------
 
     def driven_angle(self, driver_angle: Array) -> Array:
-        """Wheel's turn [rad] with its space centred on the pinion's tooth: pi + pi/z2 - (z1/z2) theta_1."""
+        """Wheel's turn [rad] with its space centred on the pinion's tooth: pi + pi/z2 - (z1/z2) theta_1.
+
+        Of helical gears while both face centres lie in one plane.
+        """
         return math.pi + math.pi / self.wheel.teeth - driver_angle / self.ratio
 
     def touching_angle(self, driver_angle: Array, flank: Flank, displaced: Displaced) -> Array:
@@ -134,8 +154,10 @@ class SpurPair(CylindricalPair):
         along = self._along(working, displaced)
         turned = flank * along - self.pinion.base_radius * (driver_angle - direction)
         mate = 0 if flank == 1 else 1
+        screwed = self.wheel.twist * centre_line[:, 2] if self.wheel.helix_angle else 0.0
         return np.asarray(
-            math.pi + direction + mate * self.wheel.angular_pitch + turned / self.wheel.base_radius, dtype=np.float64
+            math.pi + direction + mate * self.wheel.angular_pitch + turned / self.wheel.base_radius + screwed,
+            dtype=np.float64,
         )
 
     def mating_flank(self, flank: Flank) -> Flank:

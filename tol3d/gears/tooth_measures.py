@@ -1,13 +1,14 @@
 """Tooth thickness as shops measure it: the span over teeth, and the size over or between two pins or balls.
 
-Closed forms of ISO 21771-1 for spur gears. Sizes of an internal gear are those of its spaces, which have the shape of
-the teeth of an external one. All forms and their inverses are exact for rigid involutes. Lengths in mm.
+Closed forms of ISO 21771-1 for spur and helical gears. Sizes of an internal gear are those of its spaces, which have
+the shape of the teeth of an external one. All forms and their inverses are exact for rigid involutes. Lengths in mm.
 """
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from tol3d.gears.involute import inverse_involute, involute
 from tol3d.numerics.arrays import Array
 
 PIN_STEP = 0.05  # mm; diameters of proposed pins are multiples of it
+BISECTIONS = 60  # of an angle below a right one: to rounding
 REACH_SLACK = 1e-9  # mm; contact at the very end of a flank is allowed
 
 
@@ -24,7 +26,8 @@ REACH_SLACK = 1e-9  # mm; contact at the very end of a flank is allowed
 class Span:
     """The span W_k: distance of two parallel faces over k teeth, of an internal gear over k spaces.
 
-    W_k = m cos alpha (pi (k - 1/2) + z inv alpha + 2 x tan alpha) (ISO 21771-1); internal: - 2 x tan alpha.
+    W_k = m_n cos alpha_n (pi (k - 1/2) + z inv alpha_t + 2 x tan alpha_n) (ISO 21771-1); internal: - 2 x tan alpha.
+    The faces touch W_k sin beta_b apart along the axis.
 
     Args:
         teeth: k; the number of spaces of an internal gear.
@@ -39,24 +42,33 @@ class Span:
 
     def size(self, gear: CylindricalGear) -> float:
         """W_k [mm]."""
-        return gear.base_radius * (2 * math.pi * (self.teeth - 1) / gear.teeth + 2 * _convex_half_angle(gear))
+        return gear.section_arm * (2 * math.pi * (self.teeth - 1) / gear.teeth + 2 * _convex_half_angle(gear))
 
     def thickness(self, gear: CylindricalGear, size: float) -> float:
         """Tooth thickness [mm], the arc at the reference circle, of a gear with a span `size` [mm]."""
-        half = size / (2 * gear.base_radius) - math.pi * (self.teeth - 1) / gear.teeth
+        half = size / (2 * gear.section_arm) - math.pi * (self.teeth - 1) / gear.teeth
         return _thickness(gear, half)
 
     def touches_at(self, gear: CylindricalGear) -> float:
-        """Radius [mm] of contact of both faces in the symmetric position: r_y^2 = r_b^2 + (W_k/2)^2."""
-        return math.hypot(gear.base_radius, self.size(gear) / 2)
+        """Radius [mm] of contact of both faces in the symmetric position: r_y^2 = r_b^2 + (W_k cos beta_b/2)^2."""
+        return math.hypot(gear.base_radius, self.size(gear) * gear.base_helix_cosine / 2)
+
+    def least_face_width(self, gear: CylindricalGear) -> float:
+        """Face width [mm] that the faces need to touch teeth on both sides: W_k sin beta_b, and no reserve."""
+        return self.size(gear) * math.sin(gear.base_helix_angle)
 
     def require_reach(self, gear: CylindricalGear) -> None:
-        """Refuse a span whose faces touch no involute.
+        """Refuse a span whose faces touch no involute, or whose contacts lie further apart than the face is wide.
 
         Raises:
             GeometryError: with the possible numbers of teeth.
         """
         if 1 <= self.teeth <= gear.teeth and _on_flank(gear, self.touches_at(gear)):
+            if (least := self.least_face_width(gear)) > gear.face_width:
+                raise GeometryError(
+                    f"the faces of a {self.words} touch {least:.4f} mm apart along the axis, on a face only "
+                    f"{gear.face_width:g} mm wide: choose fewer teeth, or balls"
+                )
             return
         possible = [span.teeth for span in spans_of(gear)]
         over = f"expected {_range_words(possible)}" if possible else "no number of teeth does on this gear; use pins"
@@ -68,22 +80,30 @@ class Span:
 
 @dataclass(frozen=True)
 class OverPins:
-    """The size M over two pins or balls in opposite spaces; between them for an internal gear.
+    """The size M over two pins in opposite spaces; between them for an internal gear.
 
-    M = 2 r_K + D_M, for an odd number of teeth 2 r_K cos(pi/(2 z)) + D_M, inv alpha_K = D_M/(2 r_b) + eta_b - pi/z,
-    r_K = r_b/cos alpha_K, eta_b half the angle of a tooth at the base circle. For an internal gear D_M is negative,
-    and inv alpha_K = D_M/(2 r_b) + eta_b with half the angle of a space (ISO 21771-1).
+    M = 2 r_K + D_M, for an odd number of teeth 2 r_K cos(pi/(2 z)) + D_M, inv alpha_K = D_M/(2 r_b cos beta_b) + eta_b
+    - pi/z, r_K = r_b/cos alpha_K, eta_b half the angle of a tooth at the base circle. For an internal gear D_M is
+    negative, and inv alpha_K = D_M/(2 r_b cos beta_b) + eta_b with half the angle of a space (ISO 21771-1). A pin lies
+    along its space: of a helical gear a straight one leans, and between parallel anvils two of them stand exactly
+    opposite for any number of teeth, M = 2 r_K + D_M.
 
     Args:
-        diameter: D_M of the pins or balls [mm]; spur teeth give the same with either.
+        diameter: D_M of the pins [mm].
     """
 
     diameter: float
 
+    bodies: ClassVar[str] = "pins"
+
     @property
     def words(self) -> str:
         """Its name."""
-        return f"size over pins of {self.diameter:g} mm"
+        return f"size over {self.bodies} of {self.diameter:g} mm"
+
+    def opposite(self, gear: CylindricalGear) -> float:
+        """Distance of the centres over their diameter 2 r_K: 1, of spur gears cos(pi/(2 z)) if z is odd."""
+        return 1.0 if gear.helix_angle else _opposite(gear)
 
     def size(self, gear: CylindricalGear) -> float:
         """M [mm].
@@ -92,7 +112,7 @@ class OverPins:
             GeometryError: pins so small that they touch no involute.
         """
         centre = gear.base_radius / math.cos(self._angle(gear))
-        return 2 * centre * _opposite(gear) + gear.iso_sign * self.diameter
+        return 2 * centre * self.opposite(gear) + gear.iso_sign * self.diameter
 
     def thickness(self, gear: CylindricalGear, size: float) -> float:
         """Tooth thickness [mm], the arc at the reference circle, of a gear with a size `size` [mm].
@@ -100,16 +120,19 @@ class OverPins:
         Raises:
             GeometryError: a size at which the pins' centres lie within the base circle.
         """
-        centre = (size - gear.iso_sign * self.diameter) / (2 * _opposite(gear))
+        centre = (size - gear.iso_sign * self.diameter) / (2 * self.opposite(gear))
         if centre < gear.base_radius:
-            least = 2 * gear.base_radius * _opposite(gear) + gear.iso_sign * self.diameter
+            least = 2 * gear.base_radius * self.opposite(gear) + gear.iso_sign * self.diameter
             raise GeometryError(f"expected a {self.words} of at least {least:.4f} mm, got {size:.4f} mm")
         half = involute(math.acos(gear.base_radius / centre)) - gear.iso_sign * self._turn(gear)
         return _thickness(gear, math.pi / gear.teeth + half if gear.iso_sign > 0 else half)
 
     def touches_at(self, gear: CylindricalGear) -> float:
-        """Radius [mm] at which a pin touches both flanks of its space; if below the base circle, it touches none."""
-        roll = math.tan(self._angle(gear)) - gear.iso_sign * self._turn(gear)
+        """Radius [mm] at which a pin touches both flanks of its space; if below the base circle, it touches none.
+
+        Its roll is tan alpha_K - D_M cos beta_b/(2 r_b).
+        """
+        roll = math.tan(self._angle(gear)) - gear.iso_sign * self._turn(gear) * gear.base_helix_cosine**2
         return gear.base_radius * (math.hypot(1.0, roll) if roll > 0.0 else 1.0 + roll)
 
     def require_reach(self, gear: CylindricalGear) -> None:
@@ -118,7 +141,7 @@ class OverPins:
         Raises:
             GeometryError: with the remedy.
         """
-        pins = pins_of(gear)
+        pins = pins_of(gear, type(self))
         advice = f"; {pins.diameter:g} mm does" if pins else ""
         try:
             centre, sign = gear.base_radius / math.cos(self._angle(gear)), gear.iso_sign
@@ -133,11 +156,11 @@ class OverPins:
             if not _on_flank(gear, self.touches_at(gear))
             else ("touch the root circle" if in_root else "do not stand out beyond the tip circle")
         )
-        raise GeometryError(f"pins of {self.diameter:g} mm {why}: choose another diameter{advice}")
+        raise GeometryError(f"{self.bodies} of {self.diameter:g} mm {why}: choose another diameter{advice}")
 
     def _turn(self, gear: CylindricalGear) -> float:
-        """D_M/(2 r_b) [rad]."""
-        return self.diameter / (2 * gear.base_radius)
+        """D_M/(2 r_b cos beta_b) [rad]: a flank turned by it is the surface at the distance D_M/2."""
+        return self.diameter / (2 * gear.section_arm)
 
     def _angle(self, gear: CylindricalGear) -> float:
         """alpha_K [rad], the pressure angle at a pin's centre."""
@@ -146,10 +169,25 @@ class OverPins:
         value = space + gear.iso_sign * self._turn(gear)
         if value < 0.0:
             raise GeometryError(
-                f"pins of {self.diameter:g} mm touch no involute of this gear: choose "
+                f"{self.bodies} of {self.diameter:g} mm touch no involute of this gear: choose "
                 f"{'thicker' if gear.iso_sign > 0 else 'thinner'} ones"
             )
         return inverse_involute(value)
+
+
+@dataclass(frozen=True)
+class OverBalls(OverPins):
+    """The size M over two balls in one transverse plane; spur teeth give the same as over pins.
+
+    Args:
+        diameter: D_M of the balls [mm].
+    """
+
+    bodies: ClassVar[str] = "balls"
+
+    def opposite(self, gear: CylindricalGear) -> float:
+        """Distance of the centres over their diameter: 1, or cos(pi/(2 z)) for an odd number of teeth."""
+        return _opposite(gear)
 
 
 ToothMeasure = Span | OverPins
@@ -180,30 +218,31 @@ class PinScale:
     @property
     def _lever(self) -> float:
         """Change of the size per change of r_K/r_b [mm]."""
-        return 2 * _opposite(self.gear) * self.gear.base_radius
+        return 2 * self.pins.opposite(self.gear) * self.gear.base_radius
 
     def deviation(self, measured: Array) -> Array:
         """Deviations of the thickness (n,) from those of the size (n,) [mm]; pin centres stop at the base circle.
 
-        inv alpha_K = sqrt(q^2 - 1) - arctan sqrt(q^2 - 1) with q = r_K/r_b; the arc changes by 2 r times its change, of
-        an internal gear by -2 r times.
+        inv alpha_K = sqrt(q^2 - 1) - arctan sqrt(q^2 - 1) with q = r_K/r_b; the arc changes by 2 r cos beta times its
+        change, of an internal gear by -2 r times.
         """
         far = 1.0 / math.cos(self.pins._angle(self.gear)) + measured / self._lever
         roll = np.sqrt(np.maximum(far * far - 1.0, 0.0))
-        arc = self.gear.iso_sign * 2 * self.gear.reference_radius
+        arc = self.gear.iso_sign * 2 * self.gear.thickness_radius
         return np.asarray(arc * (roll - np.arctan(roll) - self._nominal))
 
     def measured(self, deviation: Array) -> Array:
         """Deviations of the size (n,) from those of the thickness (n,) [mm]."""
-        arc = self.gear.iso_sign * 2 * self.gear.reference_radius
+        arc = self.gear.iso_sign * 2 * self.gear.thickness_radius
         angles = [inverse_involute(max(self._nominal + change / arc, 0.0)) for change in deviation.tolist()]
         return np.asarray(self._lever * (1.0 / np.cos(angles) - 1.0 / math.cos(self.pins._angle(self.gear))))
 
 
 def spans_of(gear: CylindricalGear) -> list[Span]:
-    """Every span whose faces touch the involute."""
+    """Every span whose faces touch the involute, and both sides of it within the face."""
     spans = (Span(teeth) for teeth in range(1, gear.teeth // 2 + 1))
-    return [span for span in spans if span.size(gear) > 0.0 and _on_flank(gear, span.touches_at(gear))]
+    touching = (span for span in spans if span.size(gear) > 0.0 and _on_flank(gear, span.touches_at(gear)))
+    return [span for span in touching if span.least_face_width(gear) <= gear.face_width]
 
 
 def span_of(gear: CylindricalGear) -> Span | None:
@@ -211,12 +250,12 @@ def span_of(gear: CylindricalGear) -> Span | None:
     return min(spans_of(gear), key=lambda span: abs(span.touches_at(gear) - _middle(gear)), default=None)
 
 
-def pins_of(gear: CylindricalGear) -> OverPins | None:
-    """Pins, in steps of PIN_STEP, that touch near the circle of radius r + x m; None if none do."""
-    return next(_possible_pins(gear), None)
+def pins_of(gear: CylindricalGear, kind: type[OverPins] = OverPins) -> OverPins | None:
+    """Pins or balls, in steps of PIN_STEP, that touch near the circle of radius r + x m; None if none do."""
+    return next(_possible_pins(gear, kind), None)
 
 
-def _possible_pins(gear: CylindricalGear) -> Iterator[OverPins]:
+def _possible_pins(gear: CylindricalGear, kind: type[OverPins]) -> Iterator[OverPins]:
     """Pins by distance from the diameter that touches at the middle of the flank."""
     roll = gear.roll_at(_middle(gear))
     half, sign = _convex_half_angle(gear), gear.iso_sign
@@ -224,11 +263,27 @@ def _possible_pins(gear: CylindricalGear) -> Iterator[OverPins]:
     if not 0.0 < angle < math.pi / 2:
         return
     wanted = sign * 2 * gear.base_radius * (math.tan(angle) - roll)
+    if gear.helix_angle:
+        wanted = _screw_pin(gear, roll, angle)
     nearest = round(wanted / PIN_STEP)
     for step in range(round(gear.module / PIN_STEP) + 1):
         for count in (nearest + step, nearest - step):
-            if count > 0 and _is_possible(gear, pins := OverPins(round(count * PIN_STEP, 6))):
+            if count > 0 and _is_possible(gear, pins := kind(round(count * PIN_STEP, 6))):
                 yield pins
+
+
+def _screw_pin(gear: CylindricalGear, roll: float, angle: float) -> float:
+    """Diameter D [mm] of a pin that touches screw flanks at a roll t [rad].
+
+    tan alpha_K = t + D cos beta_b/(2 r_b) and inv alpha_K = D/(2 r_b cos beta_b) + t - angle meet where the first less
+    alpha_K is the second: by bisection over alpha_K, which is below the spur gear's `angle`.
+    """
+    cosine, low, high = gear.base_helix_cosine, 0.0, angle
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        turn = (math.tan(middle) - roll) / cosine**2  # D/(2 r_b cos beta_b)
+        low, high = (middle, high) if involute(middle) > turn + roll - angle else (low, middle)
+    return 2 * gear.base_radius * (math.tan(low) - roll) / cosine
 
 
 def _is_possible(gear: CylindricalGear, pins: OverPins) -> bool:
@@ -256,9 +311,9 @@ def _convex_half_angle(gear: CylindricalGear) -> float:
 
 
 def _thickness(gear: CylindricalGear, convex_half_angle: float) -> float:
-    """The arc of a tooth at the reference circle [mm]."""
-    half = convex_half_angle - involute(gear.pressure_angle)
-    return 2 * gear.reference_radius * (half if gear.iso_sign > 0 else math.pi / gear.teeth - half)
+    """The arc of a tooth at the reference circle, in the normal section [mm]."""
+    half = convex_half_angle - involute(gear.transverse_pressure_angle)
+    return 2 * gear.thickness_radius * (half if gear.iso_sign > 0 else math.pi / gear.teeth - half)
 
 
 def _opposite(gear: CylindricalGear) -> float:

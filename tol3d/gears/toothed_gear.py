@@ -54,13 +54,18 @@ class ToothedGear:
         """2 pi/z [rad], about the axis."""
         return 2 * math.pi / self.teeth
 
+    @property
+    def deviation_radius(self) -> float:
+        """Radius [mm] at which `tooth_thickness_deviation` is an arc: the reference circle."""
+        return self.reference_radius
+
     def perturbed(self, flank_turn: float, scale: float) -> Self:
         """The gear with its flanks turned out of their teeth [rad], and grown; a bevel gear grows about its apex.
 
         Raises:
             GeometryError: such a gear cannot be made.
         """
-        thicker = self.tooth_thickness_deviation + 2 * self.reference_radius * flank_turn
+        thicker = self.tooth_thickness_deviation + 2 * self.deviation_radius * flank_turn
         lengths = {name: getattr(self, name) for name in self.lengths}
         grown = {name: length * scale for name, length in lengths.items() if length is not None}
         return replace(self, **grown | {"tooth_thickness_deviation": thicker * scale})

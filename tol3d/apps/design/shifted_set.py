@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tol3d.apps.design.working_mesh import BasicRack, WorkingMesh, mesh_efficiency, shift_sum
 from tol3d.errors import GeometryError
@@ -187,7 +187,7 @@ def made_pair(working_mesh: WorkingMesh) -> SpurPair | InternalPair:
     """
     rack, mesh = working_mesh.rack, working_mesh.mesh
     common = (rack.module, rack.pressure_angle, FACE_WIDTH * rack.module)
-    factors = {"addendum": rack.addendum, "dedendum": rack.dedendum}
+    factors: Mapping[str, Any] = {"addendum": rack.addendum, "dedendum": rack.dedendum}
     planet = SpurGear(mesh.planet_teeth, *common, profile_shift=working_mesh.planet_shift, **factors)
     if mesh.internal:
         ring = InternalGear(mesh.teeth, *common, profile_shift=working_mesh.central_shift, **factors)

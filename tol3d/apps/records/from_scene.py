@@ -49,7 +49,9 @@ def mesh_of(meshes: Mapping[str, Mesh], scene: str, name: str | None) -> Mesh:
 
 
 def _is_external(mesh: Mesh) -> bool:
-    return mesh.pair.arm_spread == 0.0 and mesh.driven_flank == mesh.working_flank
+    """True of two external spur gears; transmission error of helical ones was not derived here."""
+    straight = mesh.pair.pinion.twist == 0.0 and mesh.pair.arm_spread == 0.0
+    return straight and mesh.driven_flank == mesh.working_flank
 
 
 def specimen_of(build: MeshBuild) -> Specimen:

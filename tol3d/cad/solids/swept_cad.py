@@ -1,5 +1,9 @@
-"""Data read off a solid swept along z: its ruled faces, and one end with its rims as a closed mesh."""
+"""Data read off a solid swept along z: its ruled faces, and one end with its rims as a closed mesh.
 
+A solid that turns as it is swept, a helical gear's, has its mesh from its section swept straight, in turned layers.
+"""
+
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -23,7 +27,7 @@ STRAIGHT = 0.05  # of the mean share; least that a step gets
 
 
 class RuledFace:
-    """A face swept along z, seen as its profile over u, at mid-height."""
+    """A face swept along z, seen as its profile over u, at mid-height; of a twisted one v is z."""
 
     def __init__(self, face: cq.Face) -> None:
         self._surface = BRepAdaptor_Surface(face.wrapped)
@@ -48,12 +52,25 @@ class RuledFace:
         """
         return np.array([self._normal(place) for place in u.tolist()])
 
+    def places(self, u: Array, v: Array) -> Array:
+        """Points (n, 3) [mm] at those parameters."""
+        points = (self._surface.Value(*place) for place in zip(u.tolist(), v.tolist(), strict=True))
+        return np.array([(point.X(), point.Y(), point.Z()) for point in points])
+
+    def place_normals(self, u: Array, v: Array) -> Array:
+        """Unit normals (n, 3) out of the solid there, as in `normals`."""
+        each = (self._normal_at(*place) for place in zip(u.tolist(), v.tolist(), strict=True))
+        return np.array([(normal.X(), normal.Y(), normal.Z()) for normal in each])
+
     def _normal(self, u: float) -> tuple[float, float]:
-        point, along, across, bend = gp_Pnt(), gp_Vec(), gp_Vec(), gp_Vec()
-        self._surface.D2(u, self._middle, point, along, across, bend, gp_Vec(), gp_Vec())
-        tangent = along if along.Magnitude() > VANISHING * bend.Magnitude() else bend
-        normal = tangent.Crossed(across).Normalized().Multiplied(self._outwards)
+        normal = self._normal_at(u, self._middle)
         return normal.X(), normal.Y()
+
+    def _normal_at(self, u: float, v: float) -> gp_Vec:
+        point, along, across, bend = gp_Pnt(), gp_Vec(), gp_Vec(), gp_Vec()
+        self._surface.D2(u, v, point, along, across, bend, gp_Vec(), gp_Vec())
+        tangent = along if along.Magnitude() > VANISHING * bend.Magnitude() else bend
+        return tangent.Crossed(across).Normalized().Multiplied(self._outwards)
 
 
 def sample_faces(part: NamedSolid, faces: Sequence[str], steps: int) -> Arrays:
@@ -104,16 +121,20 @@ class SweptMesh:
     """OCC's triangulation of one end, and its rim swept to the other end.
 
     Args:
-        vertices: (2 count, 3) [mm], first those of the lower end.
+        vertices: (layers count, 3) [mm], from the lower end up.
         triangles: (m, 3).
         rims: below each face.
         count: vertices of an end.
+        layers: ends of the steps along z, 2 of a straight sweep.
+        twist_error: largest distance [mm] of the chords along z from their helices.
     """
 
     vertices: Array
     triangles: NDArray[np.int64]
     rims: Sequence[Rim]
     count: int
+    layers: int = 2
+    twist_error: float = 0.0
 
     def arrays(self, side: NDArray[np.int8]) -> Arrays:
         """Arrays of a DisplayMesh."""
@@ -121,23 +142,42 @@ class SweptMesh:
             "vertices": self.vertices,
             "triangles": self.triangles,
             "side": side,
-            "chord_error": np.array(max(rim.chord_error for rim in self.rims)),
+            "chord_error": np.array(max(rim.chord_error for rim in self.rims) + self.twist_error),
         }
 
 
-def swept_mesh(part: NamedSolid, width: float, deflection: float) -> SweptMesh:
-    """A closed mesh of a section swept from z = -width/2 to +width/2 [mm].
+def swept_mesh(part: NamedSolid, width: float, deflection: float, twist: float = 0.0) -> SweptMesh:
+    """A closed mesh of a section swept from z = -width/2 to +width/2 [mm], turned by `twist` [rad/mm] on the way.
 
     OCC meshes faces of splines many times finer than asked for and slowly, though they are ruled along z
-    and need nothing between their ends; swept from one end the mesh closes by construction.
+    and need nothing between their ends; swept from one end the mesh closes by construction. A twisted one has as many
+    layers as keep the chords of its rim within the deflection [mm] of their helices.
+
+    Args:
+        part: the section swept straight.
+        width, deflection, twist: see above.
     """
     nodes, triangles, rims = _triangulated_end(part, deflection)
     count = len(nodes)
     begin, end = _rim(triangles).T
-    walls = np.concatenate([np.stack(corners, axis=-1) for corners in _wall(begin, end, count)])
-    height = np.full((count, 1), width / 2)
-    vertices = np.concatenate([np.hstack([nodes, -height]), np.hstack([nodes, height])])
-    return SweptMesh(vertices, np.concatenate([triangles[:, ::-1], triangles + count, walls]), rims, count)
+    furthest = float(np.hypot(*nodes.T).max())
+    steps = max(1, math.ceil(abs(twist) * width * math.sqrt(furthest / (8 * deflection))))
+    heights = np.linspace(-width / 2, width / 2, steps + 1)
+    vertices = np.concatenate([np.hstack([_turned(nodes, twist * z), np.full((count, 1), z)]) for z in heights])
+    walls = np.concatenate(
+        [np.stack(corners, axis=-1) + step * count for step in range(steps) for corners in _wall(begin, end, count)]
+    )
+    faces = np.concatenate([triangles[:, ::-1], triangles + steps * count, walls])
+    twist_error = furthest * (twist * width / steps) ** 2 / 8
+    return SweptMesh(vertices, faces, rims, count, steps + 1, twist_error)
+
+
+def _turned(nodes: Array, angle: float) -> Array:
+    """Points (n, 2) turned about the origin [rad]."""
+    if angle == 0.0:
+        return nodes
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.asarray(nodes @ np.array([[cos, sin], [-sin, cos]]))
 
 
 def tessellate(part: NamedSolid, width: float, deflection: float) -> Arrays:

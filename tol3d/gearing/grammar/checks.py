@@ -4,14 +4,24 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from tol3d.gearing.grammar.measures import FlankMeasureSpec
 from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec, ReducerSpec
-from tol3d.gearing.grammar.parts import BearingSpec, BoredGearSpec, GearSpec, ShaftSpec, carried, gears_on
+from tol3d.gearing.grammar.parts import (
+    BearingSpec,
+    BoredGearSpec,
+    GearSpec,
+    HelicalGearSpec,
+    ShaftSpec,
+    carried,
+    gears_on,
+)
 from tol3d.gearing.grammar.tolerances.axes import (
     AxisInPlaneSpec,
     AxisOutOfPlaneSpec,
     CentreDistanceSpec,
     ShaftAngleSpec,
 )
+from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.gearing.grammar.tolerances.flank_shape import ProfileFormSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
     GearToleranceSpec,
@@ -52,6 +62,56 @@ def forms_of_two_shapes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         other, known = first.setdefault(spec.of, (str(name), spec))
         if spec.waves != known.waves:
             yield ("tolerances", str(name), "shape"), f"expected the shape of {other!r}, the form of {spec.of!r} too"
+
+
+def helices_elsewhere(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Helical gears of scenes with other moves than meshes: what these compute of them was never derived."""
+    for name, move in scene.moves.items():
+        if not isinstance(move, MeshSpec):
+            for gear in scene.of(HelicalGearSpec):
+                path: KeyPath = ("parts", gear, "kind")
+                yield (
+                    path,
+                    f"expected a spur_gear, for {name!r} is {move.words}: helical gears are simulated in meshes alone",
+                )
+            return
+
+
+def readings_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Measures of helical meshes that are read in a section or of one tooth: their contact lines cross the face."""
+    helical = scene.of(HelicalGearSpec)
+    for name, measure in scene.measures.items():
+        if not isinstance(measure, FlankMeasureSpec) or not helical:
+            continue
+        path: KeyPath = ("measures", str(name))
+        if measure.read_at not in (None, "face"):
+            words = f"expected face, got {measure.read_at}: helical teeth are read over the face"
+            yield (*path, "read_at"), f"{words}, which their contact lines cross"
+        if measure.tooth != "all":
+            words = f"expected all, got {measure.tooth}: of helical teeth several touch at once"
+            yield (*path, "tooth"), words
+
+
+def forces_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Bearings of a shaft that move along the tooth force of a helical gear, whose thrust turns it at each bearing."""
+    for name, spec in scene.of(BearingClearanceSpec).items():
+        bearing = scene.parts[spec.of]
+        if spec.direction != "tooth_force" or not isinstance(bearing, BearingSpec):
+            continue
+        gear = next(
+            (g for g in gears_on(bearing.shaft, scene.parts) if isinstance(scene.parts[g], HelicalGearSpec)), None
+        )
+        if gear is not None:
+            words = "expected apart, random or {at: …}, got tooth_force: the thrust of the helical gear "
+            yield ("tolerances", str(name), "direction"), f"{words}{gear!r} turns the force at each bearing its own way"
+
+
+def steep_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Helix angles that nobody cuts for parallel axes."""
+    for name, gear in scene.of(HelicalGearSpec).items():
+        if gear.helix_angle.internal > STEEPEST_USUAL + ROUNDING:
+            words = f"expected a helix_angle of at most 45 deg, got {gear.helix_angle}"
+            yield ("parts", name, "helix_angle"), f"{words}; check the unit"
 
 
 def implausible_displacements(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
@@ -171,5 +231,6 @@ WHOLE: Final = Implausible(1.0)
 WIDEST_FACE: Final = 1000.0  # mm; that of the widest mill gears
 NARROWEST_FACE: Final = 0.1  # modules; watch gears have 2
 SLENDEREST: Final = 100.0  # diameters from a shaft's origin to its end
+STEEPEST_USUAL: Final = math.radians(45.0)  # rad; herringbones of steel mills have that much
 WIDEST_ANGLE: Final = math.radians(5.0)  # rad; free turns are minutes, and axes that cross are another mesh
 ROUNDING: Final = 1e-9  # mm; the same number in two units

@@ -10,6 +10,7 @@ from pydantic import AfterValidator, Field, model_validator
 from tol3d.gearing.grammar.parts import (
     BevelGearSpec,
     GearSpec,
+    HelicalGearSpec,
     HousingSpec,
     InternalGearSpec,
     ShaftReference,
@@ -90,8 +91,8 @@ class MeshSpec(GearMeshSpec):
     The driven axis lies at the centre distance, at +x; that of a driven internal gear at -x, for it is around its mate.
     """
 
-    words: ClassVar[str] = "a mesh of spur gears"
-    gear_specs: ClassVar[tuple[type[GearSpec], ...]] = (SpurGearSpec, InternalGearSpec)
+    words: ClassVar[str] = "a mesh of spur or helical gears"
+    gear_specs: ClassVar[tuple[type[GearSpec], ...]] = (SpurGearSpec, HelicalGearSpec, InternalGearSpec)
 
     kind: Literal["mesh"]
     centre_distance: Annotated[Quantity, Of("length"), Positive()] | None = Field(

@@ -37,10 +37,13 @@ class GearSpec(TurningSpec):
     words: ClassVar[str] = "a gear"
 
     teeth: int = Field(ge=1, le=MOST_TEETH, description="number of teeth z")
-    module: Length = Field(description="module m; of a bevel gear at the outer end")
+    module: Length = Field(
+        description="module m; of a helical gear the normal module m_n, of a bevel gear that at the outer end"
+    )
     pressure_angle: Annotated[Quantity, Of("angle"), Positive()] = Field(
         default=Quantity(20.0, "deg"),
-        description="pressure angle at the reference circle, or on the pitch cone",
+        description="pressure angle at the reference circle, of a helical gear in the normal section, or on the pitch "
+        "cone",
         json_schema_extra={"default": "20 deg"},  # pydantic would show the Quantity's fields
     )
     face_width: Annotated[Length, AfterValidator(_wide_enough)] = Field(description="face width b")
@@ -55,14 +58,42 @@ class BoredGearSpec(GearSpec):
     bore: Length | None = Field(default=None, description="diameter of the bore; default: none")
 
 
-class SpurGearSpec(BoredGearSpec, GrowingSpec):
+class ExternalGearSpec(BoredGearSpec, GrowingSpec):
+    """A cylindrical gear with teeth on its outside."""
+
+    root_fillet: Length | None = Field(
+        default=None, description="radius between flank and root circle; default: 0.38 m (ISO 53) or the full round"
+    )
+
+
+class SpurGearSpec(ExternalGearSpec):
     """A spur gear; its tooth thickness is an arc at the reference circle."""
 
     words: ClassVar[str] = "a spur gear"
 
     kind: Literal["spur_gear"]
-    root_fillet: Length | None = Field(
-        default=None, description="radius between flank and root circle; default: 0.38 m (ISO 53) or the full round"
+
+
+def _not_negative(angle: Quantity) -> Quantity:
+    if angle.number < 0.0:
+        raise refused("", "an angle of zero or more (hand gives the sense of the helix)", repr(str(angle)))
+    return angle
+
+
+class HelicalGearSpec(ExternalGearSpec):
+    """A helical gear on a parallel axis: module, pressure angle and tooth thickness are those of the normal section.
+
+    Profile shift, addendum and dedendum count in normal modules. Its mate has the same helix angle and the other hand.
+    """
+
+    words: ClassVar[str] = "a helical gear"
+
+    kind: Literal["helical_gear"]
+    helix_angle: Annotated[Quantity, Of("angle"), AfterValidator(_not_negative)] = Field(
+        description="helix angle beta at the reference cylinder; 0 deg is a spur gear"
+    )
+    hand: Literal["right", "left"] = Field(
+        description="of the helix: seen from outside, the axis upright, right-hand teeth lean to the right"
     )
 
 

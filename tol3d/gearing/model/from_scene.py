@@ -93,7 +93,7 @@ def refuse_other_measure(scene: Scene, name: str, spec: ToothThicknessSpec, gear
         return
     path: KeyPath = ("tolerances", name, "measured")
     if not isinstance(gear, SpurGear | InternalGear):
-        word = "a span" if spec.measured.pins is None else "pins"
+        word = "a span" if spec.measured.key == "span" else spec.measured.key
         raise scene.refuse(path, f"expected arc or normal, got {word}: {spec.of!r} is a bevel gear")
     try:
         measure = spec.measured.measure
@@ -104,7 +104,7 @@ def refuse_other_measure(scene: Scene, name: str, spec: ToothThicknessSpec, gear
             arc = measure.thickness(gear, measure.size(gear) + size) - gear.tooth_thickness
             measure.require_reach(replace(gear, tooth_thickness_deviation=gear.tooth_thickness_deviation + arc))
     except GeometryError as error:
-        raise scene.refuse((*path, "span" if spec.measured.pins is None else "pins"), str(error)) from None
+        raise scene.refuse((*path, spec.measured.key), str(error)) from None
 
 
 def _whole_sizes(spec: ToothThicknessSpec, scene: Scene, words: str, nominal: float) -> str:

@@ -2,11 +2,14 @@
 
 import math
 from functools import singledispatch
+from typing import Final
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.moves import BevelMeshSpec, GearMeshSpec, MeshSpec
-from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, InternalGearSpec, SpurGearSpec
+from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, HelicalGearSpec, InternalGearSpec, SpurGearSpec
 from tol3d.gears import (
+    LEFT_HAND,
+    RIGHT_HAND,
     BevelGear,
     BevelPair,
     Gear,
@@ -17,6 +20,7 @@ from tol3d.gears import (
     SpurPair,
     pitch_angles,
 )
+from tol3d.gears.spur_pair import crossed_axes
 from tol3d.scene import Scene
 from tol3d.units import Quantity
 
@@ -44,7 +48,7 @@ def undercut_warning(gear: Gear) -> str:
 
 @singledispatch
 def assembly_warning(pair: GearPair) -> str:
-    """Warning if the gears of a pair run together but cannot be assembled; or ""."""
+    """Warning if the gears of a pair run together but cannot be assembled, or not as evenly as others; or ""."""
     return ""
 
 
@@ -60,6 +64,8 @@ def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
     if move.centre_distance is None:
         words = "expected the centre_distance of the axes, got none; it follows only where both shafts lie in bores"
         raise scene.refuse(("moves", name), words)
+    if isinstance(pinion, SpurGear) and isinstance(wheel, SpurGear) and (crossed := crossed_axes(pinion, wheel)):
+        raise scene.refuse(("moves", name, "driven"), crossed)
     try:
         pair = cylindrical_pair(pinion, wheel, move.centre_distance.internal)
         pair.refuse_interference()
@@ -97,14 +103,14 @@ def cylindrical_pair(
 
 
 def cylindrical_gear(scene: Scene, name: str) -> SpurGear | InternalGear:
-    """A spur gear or a ring of a scene.
+    """A spur or helical gear or a ring of a scene.
 
     Raises:
         SceneError: it cannot be made.
     """
     spec = scene.parts[name]
     try:
-        if isinstance(spec, SpurGearSpec):
+        if isinstance(spec, SpurGearSpec | HelicalGearSpec):
             return _spur_gear(spec)
         if isinstance(spec, InternalGearSpec):
             return _internal_gear(spec)
@@ -113,7 +119,8 @@ def cylindrical_gear(scene: Scene, name: str) -> SpurGear | InternalGear:
     raise TypeError(f"{name} is no spur gear")
 
 
-def _spur_gear(spec: SpurGearSpec) -> SpurGear:
+def _spur_gear(spec: SpurGearSpec | HelicalGearSpec) -> SpurGear:
+    helix = (spec.helix_angle.internal, spec.hand) if isinstance(spec, HelicalGearSpec) else (0.0, "right")
     return SpurGear(
         teeth=spec.teeth,
         module=spec.module.internal,
@@ -124,6 +131,8 @@ def _spur_gear(spec: SpurGearSpec) -> SpurGear:
         dedendum=spec.dedendum,
         root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
         bore=internal(spec.bore),
+        helix_angle=helix[0],
+        hand=LEFT_HAND if helix[1] == "left" else RIGHT_HAND,
     )
 
 
@@ -141,8 +150,16 @@ def _internal_gear(spec: InternalGearSpec) -> InternalGear:
     )
 
 
+SHARP_TIP: Final = 0.2  # normal modules; hardened teeth chip where their tips are thinner (ISO 6336-1 asks for as much)
+
+
 @undercut_warning.register
 def _(gear: SpurGear) -> str:
+    if gear.helix_angle and gear.normal_tip_thickness < SHARP_TIP * gear.module:
+        return (
+            f"sharp tips: the teeth are {gear.normal_tip_thickness:.4f} mm thick at the tip in the normal section, "
+            f"below {SHARP_TIP:g} normal modules; lower addendum or profile_shift"
+        )
     if gear.undercut_radius > gear.base_radius:
         return (
             f"undercut by a rack of addendum 1, because profile_shift is below {gear.undercut_limit_shift:.4f}; "
@@ -210,6 +227,17 @@ def _(gear: BevelGear) -> str:
             "the flank is lost only below the flank in use"
         )
     return ""
+
+
+@assembly_warning.register
+def _(pair: SpurPair) -> str:
+    """Warning of teeth that keep contact only because they lean, by the helix of the pair."""
+    if pair.contact_ratio >= 1.0:
+        return ""
+    return (
+        f"contact ratio {pair.contact_ratio:.4f} over the profile is below 1: contact is kept by the overlap "
+        f"{pair.overlap_ratio:.4f} alone, and an end of the face is not touched at every position"
+    )
 
 
 @assembly_warning.register

@@ -9,7 +9,7 @@ from tol3d.errors import GeometryError
 from tol3d.gearing.effects import ToothThickness
 from tol3d.gearing.model import Model
 from tol3d.gears import Gear, InternalGear, SpurGear
-from tol3d.gears.tooth_measures import Span, ToothMeasure, pins_of, span_of
+from tol3d.gears.tooth_measures import OverBalls, Span, ToothMeasure, pins_of, span_of
 from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, Row, note, titled
 from tol3d.statistics.distributions import DeviationLaw
@@ -86,6 +86,8 @@ def _rows(name: str, gear: Gear, stated: Sequence[Thickness]) -> Iterator[tuple[
     limits = [own.limits for own in stated]
     deviations = (0.0, sum(low for low, _ in limits), sum(high for _, high in limits))
     words = "arc s" if isinstance(gear, SpurGear | InternalGear) else "arc, mean section"
+    if isinstance(gear, SpurGear) and gear.helix_angle:
+        words = "arc s_n, normal section"
     yield _row(name, words, [gear.section_thickness + deviation for deviation in deviations])
     if isinstance(gear, SpurGear | InternalGear):
         for measure in _measures(gear, [own.over for own in stated if own.over is not None]):
@@ -96,14 +98,25 @@ def _measures(gear: SpurGear | InternalGear, stated: Sequence[ToothMeasure]) -> 
     """Spans, then pins: those of the scene, or what would do."""
     spans: list[ToothMeasure | None] = [own for own in stated if isinstance(own, Span)]
     pins: list[ToothMeasure | None] = [own for own in stated if not isinstance(own, Span)]
-    found = [*(spans or [span_of(gear)]), *(pins or [pins_of(gear)])]
+    found = [*(spans or [span_of(gear)]), *(pins or _chosen_pins(gear))]
     return dict.fromkeys(own for own in found if own is not None)
+
+
+def _chosen_pins(gear: SpurGear | InternalGear) -> Iterator[ToothMeasure | None]:
+    """Pins, and balls where they give another size: over an odd number of helical teeth."""
+    yield (pins := pins_of(gear))
+    if pins is not None and (balls := OverBalls(pins.diameter)).opposite(gear) != pins.opposite(gear):
+        yield balls
 
 
 def _words(measure: ToothMeasure, gear: SpurGear | InternalGear) -> str:
     words = measure.words
     if isinstance(gear, InternalGear):
-        words = words.replace(" teeth", " spaces").replace("over pins", "between pins")
+        words = (
+            words.replace(" teeth", " spaces")
+            .replace("over pins", "between pins")
+            .replace("over balls", "between balls")
+        )
     return words
 
 

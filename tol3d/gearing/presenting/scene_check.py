@@ -1,10 +1,21 @@
 """Tables of a scene of gears: gears, meshes, measures, contributors and their coefficients."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Final
 
-from tol3d.gearing.model import Backlash, Contributor, LostMotion, Measure, Model, Planar, Train, TransmissionError
+from tol3d.gearing.model import (
+    Backlash,
+    Contributor,
+    LostMotion,
+    Measure,
+    Mesh,
+    Model,
+    Planar,
+    Train,
+    TransmissionError,
+)
 from tol3d.gearing.model.links import LoadPath, Parallel, links_of
 from tol3d.gearing.model.trains import gravity_torque
 from tol3d.gearing.presenting.backlash_table import backlash_table
@@ -17,8 +28,10 @@ from tol3d.gearing.system import EXACT, GearSystem, gear_model
 from tol3d.gears import (
     LEFT,
     RIGHT,
+    RIGHT_HAND,
     BevelGear,
     BevelPair,
+    Gear,
     InternalGear,
     InternalPair,
     SpurGear,
@@ -169,6 +182,24 @@ class SpurColumn(CylindricalColumn):
     bore = Computed(Shows("bore [mm]", "g"), lambda own: own.of.bore or None)
 
 
+class HelicalColumn(SpurColumn):
+    """An external gear with screw teeth."""
+
+    module = Computed(Shows("normal module m_n [mm]", "g"), lambda own: own.of.module)
+    pressure_angle = Computed(Shows("normal pressure angle α_n [°]", "degrees"), lambda own: own.of.pressure_angle)
+    helix = Computed(
+        Shows("helix angle β [°], hand"),
+        lambda own: f"{degrees_text(own.of.helix_angle)}, {'right' if own.of.hand == RIGHT_HAND else 'left'}",
+    )
+    transverse_angle = Computed(
+        Shows("transverse pressure angle α_t [°]", "degrees"), lambda own: own.of.transverse_pressure_angle
+    )
+    thickness = Computed(Shows("normal tooth thickness s_n [mm]", ".4f"), lambda own: own.of.tooth_thickness)
+    tip_thickness = Computed(
+        Shows("normal thickness at the tip s_na [mm]", ".4f"), lambda own: own.of.normal_tip_thickness
+    )
+
+
 class RingColumn(CylindricalColumn):
     """A gear with internal teeth."""
 
@@ -233,6 +264,24 @@ class ParallelColumn(MeshColumn):
     )
 
 
+class HelicalMeshColumn(ParallelColumn):
+    """A mesh of helical gears."""
+
+    working_angle = Computed(
+        Shows("working pressure angle, transverse α_wt [°]", "degrees"),
+        lambda own: own.of.pair.working_pressure_angle,
+    )
+    overlap = Computed(Shows("overlap ratio ε_β", ".4f"), lambda own: own.of.pair.overlap_ratio)
+    total = Computed(Shows("total contact ratio ε_γ", ".4f"), lambda own: own.of.pair.total_contact_ratio)
+    axial_pitch = Computed(Shows("axial pitch p_x [mm]"), lambda own: _axial_pitch(own.of.pair))
+
+
+def _axial_pitch(pair: SpurPair) -> str:
+    """The axial pitch, and that the common face is narrower where it is."""
+    pitch = math.pi * pair.pinion.module / math.sin(pair.pinion.helix_angle)
+    return f"{pitch:.4f}" + (", wider than the common face" if pair.overlap_ratio < 1.0 else "")
+
+
 class BevelMeshColumn(MeshColumn):
     """A mesh of bevel gears."""
 
@@ -243,14 +292,35 @@ class BevelMeshColumn(MeshColumn):
     normal = Computed(Shows("nominal normal backlash", "um", "µm"), lambda own: own.of.pair.normal_backlash)
 
 
-GEAR_COLUMNS: Final = {SpurGear: SpurColumn, InternalGear: RingColumn, BevelGear: BevelColumn}
-MESH_COLUMNS: Final = {SpurPair: ParallelColumn, InternalPair: ParallelColumn, BevelPair: BevelMeshColumn}
+GEAR_COLUMNS: Final[Mapping[type[Any], type[GearColumn]]] = {
+    SpurGear: SpurColumn,
+    InternalGear: RingColumn,
+    BevelGear: BevelColumn,
+}
+MESH_COLUMNS: Final[Mapping[type[Any], type[MeshColumn]]] = {
+    SpurPair: ParallelColumn,
+    InternalPair: ParallelColumn,
+    BevelPair: BevelMeshColumn,
+}
 """Each kind of gear and of pair has its own rows."""
+
+
+def gear_column(gear: Gear) -> GearColumn:
+    """Rows of a gear."""
+    is_helical = isinstance(gear, SpurGear) and gear.helix_angle > 0.0
+    return (HelicalColumn if is_helical else GEAR_COLUMNS[type(gear)])(gear)
+
+
+def mesh_column(mesh: Mesh) -> MeshColumn:
+    """Rows of a mesh."""
+    pair = mesh.pair
+    is_helical = isinstance(pair, SpurPair) and pair.pinion.helix_angle > 0.0
+    return (HelicalMeshColumn if is_helical else MESH_COLUMNS[type(pair)])(mesh)
 
 
 def gears_table(model: Model) -> list[PageItem]:
     """The gears side by side, lengths in mm."""
-    gears = side_by_side("", [(gear.name, GEAR_COLUMNS[type(gear.gear)](gear.gear)) for gear in model.gears])
+    gears = side_by_side("", [(gear.name, gear_column(gear.gear)) for gear in model.gears])
     parts = side_by_side("", [(gear.name, PartColumn(gear)) for gear in model.gears])
     return titled("parts", replace(gears, rows=[*gears.rows, *parts.rows]))
 
@@ -263,9 +333,7 @@ def housings_line(model: Model) -> Line:
 
 def meshes_table(model: Model) -> list[PageItem]:
     """The moves, with what the nominal pair gives."""
-    return titled(
-        "moves", side_by_side("", [(mesh.name, MESH_COLUMNS[type(mesh.pair)](mesh)) for mesh in model.meshes])
-    )
+    return titled("moves", side_by_side("", [(mesh.name, mesh_column(mesh)) for mesh in model.meshes]))
 
 
 class MeasureRow(RowOf[Measure]):

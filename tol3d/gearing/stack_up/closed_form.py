@@ -2,7 +2,8 @@
 
 Contributors are independent, so means and variances add; the effects of one in several meshes are added first.
 Deviations with a direction count by the mean square of their length; tilts by numerical integration of their one-sided
-loss, together with all else where contributors do more than tilt one mesh (`leaning.py`). Offsets of fixed direction
+loss, together with all else where contributors do more than tilt one mesh (`leaning.py`); of helical gears the loss is
+that of a mean position, whose own share of the variance is neglected. Offsets of fixed direction
 that turn together are the exception: a random position turns them alike, so they vary together, and each takes half of
 their covariance.
 """
@@ -42,7 +43,9 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     terms = [term for part in parts for term in part.terms]
     groups = leaning_groups([part.stack for part in parts])
     alike = all(part.stack.both_sides_alike for part in parts)
-    plain = {group: tilts for group in groups if (tilts := _plain_tilts(group, terms, alike)) is not None}
+    straight = not any(part.stack.pair.pinion.twist for part in parts)
+    of_tilts = {group: _plain_tilts(group, terms, alike) if straight else None for group in groups}
+    plain = {group: tilts for group, tilts in of_tilts.items() if tilts is not None}
     leaning = [group for group in groups if group not in plain]
     names = frozenset(contributor.name for group in leaning for contributor in group)
     linear = [term for term in terms if term.term.tilts is None and term.term.contributor.name not in names]
@@ -142,7 +145,8 @@ def _lever(measure: Measure) -> float:
 
 def _parts(model: Model, measure: Measure) -> Iterator[_Part]:
     for factor, backlash in measure.kind.backlashes:
-        stack = stack_of(model, model.mesh(backlash.mesh), backlash.reading)
+        at = model.driver_angles(measure, backlash.mesh)
+        stack = stack_of(model, model.mesh(backlash.mesh), backlash.reading, at)
         yield _Part(model, measure, stack, _lever(measure) * factor * per_normal_backlash(model, backlash))
 
 

@@ -15,7 +15,8 @@ deviation takes from the normal backlash (-2 e1 sin(alpha) cos(psi1) ...) and th
 cos(alpha) sin(psi1) ...) of every effect that turns, of any pair; sin(psi) cos(alpha) + cos(psi) sin(alpha) is the sine
 of the sum. What rests drops out: tooth thickness, centre distance, bearing clearance, tilt, temperature. They return
 only in products with rotating deviations, and if base pitches differ, which is neglected here as in all stack-ups.
-Single flanks that deviate add the offset of the pair that touches first, see tooth_pairs.py.
+Single flanks that deviate add the offset of the pair that touches first, see tooth_pairs.py; so do the contact lines of
+helical gears whose axes lean.
 """
 
 import math
@@ -25,51 +26,11 @@ from typing import Literal
 import numpy as np
 
 from tol3d.gearing.model import Backlash, Kind, LostMotion, Mesh, Model, Reading, TransmissionError
+from tol3d.gearing.stack_up.cylindrical import HelicalStack, SpurStack
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Bound, Neglect, Role, Term
-from tol3d.gearing.stack_up.tooth_pairs import teeth_deviate
 from tol3d.gears import BevelPair, GearPair, InternalPair, SpurPair
 from tol3d.numerics.arrays import Array
-
-
-class SpurStack(Stack[SpurPair | InternalPair]):
-    """The stack-up of two spur gears, of which one may be internal.
-
-    Sources: ISO/TR 10064-3 (deviations of axes); ISO 21771-1:2024, 5.6 (nominal). Neglected: squares of deviations
-    (0.05 um on the inputs of Jiang et al.), and contact away from the pitch point: gears that grow by different
-    strains have different base pitches (up to 3.5 um for a pinion alone 20 K warmer).
-    """
-
-    @property
-    def neglects(self) -> tuple[Neglect, ...]:
-        """Base pitches that grow apart, and the nominal backlash that grows.
-
-        A pair whose contact lies s along the path from the pitch point gains or loses s times the difference of the
-        gears' strains, on each flank side; both sides may touch at the end of the longer part of the path. A pair
-        that grows as a whole scales its nominal backlash.
-        """
-        growth = {part: self._growth(part) for part in (self.mesh.driver, self.mesh.driven, self.mesh.housing) if part}
-        if not any(growth.values()):
-            return ()
-        apart = (*growth[self.mesh.driver], *(term.times(-1.0) for term in growth[self.mesh.driven]))
-        scaled = (Bound(abs(self.nominal), terms) for terms in growth.values())
-        return (
-            Neglect("base pitches of gears that grow by different strains", (Bound(2 * self._longest_path, apart),)),
-            Neglect("growth of the nominal backlash", tuple(scaled)),
-        )
-
-    def _growth(self, part: str) -> tuple[Term, ...]:
-        """Strain of a part by each temperature that acts on it [1/K]."""
-        return tuple(
-            strain for contribution in self.contributions for name, strain in contribution.strains if name == part
-        )
-
-    @property
-    def _longest_path(self) -> float:
-        """Longer part of the path of contact, from pitch point to tip [mm]: r_b |tan alpha_a - tan alpha_w|."""
-        at_pitch = math.tan(self.pair.working_pressure_angle)
-        return max(gear.base_radius * abs(gear.tip_roll - at_pitch) for gear in (self.pair.pinion, self.pair.wheel))
-
 
 Terms = tuple[Term, ...]
 
@@ -150,9 +111,11 @@ class BevelStack(Stack[BevelPair]):
         return (*self.sideways, *self._left_out("aside_by_turns"))
 
 
-def stack_of(model: Model, mesh: Mesh, reading: Reading) -> Stack[GearPair]:
-    """The stack-up of a mesh for one of its readings."""
+def stack_of(model: Model, mesh: Mesh, reading: Reading, at: Sequence[float] | None = None) -> Stack[GearPair]:
+    """The stack-up of a mesh for one of its readings, at the driver's turns [rad] (positions,) or at any."""
     pair = mesh.pair
+    if isinstance(pair, SpurPair) and pair.pinion.helix_angle:
+        return HelicalStack(model, mesh, pair, reading, at)
     if isinstance(pair, SpurPair | InternalPair):
         return SpurStack(model, mesh, pair, reading)
     if isinstance(pair, BevelPair):
@@ -163,8 +126,8 @@ def stack_of(model: Model, mesh: Mesh, reading: Reading) -> Stack[GearPair]:
 def analytic_backlash(model: Model, kind: Backlash, deviations: Array, driver_angle: Array) -> Array:
     """Value of a backlash measure by the stack-up [mm, or rad for an angle], (rows,).
 
-    j_wt = j_bn / cos(alpha_w); an angle is j_bn over the arm of the gear that turns. For the rest angle it is the
-    middle between both rests, by which the driven gear's play lies aside.
+    j_wt = j_bn / (cos(alpha_w) cos(beta_b)); an angle is j_bn over the arm of the gear that turns. For the rest angle
+    it is the middle between both rests, by which the driven gear's play lies aside.
     """
     stack = stack_of(model, model.mesh(kind.mesh), kind.reading)
     per = per_normal_backlash(model, kind)
@@ -177,11 +140,12 @@ def analytic_backlash(model: Model, kind: Backlash, deviations: Array, driver_an
 
 
 def per_normal_backlash(model: Model, kind: Backlash) -> float:
-    """Factor from j_bn [mm] to the measure: 1, 1/cos(alpha_w) or one over the gear's arm [rad/mm]."""
+    """Factor from j_bn [mm] to the measure: 1, 1/(cos(alpha_w) cos(beta_b)) or one over the gear's arm [rad/mm]."""
     if kind.quantity == "normal_backlash":
         return 1.0
     if kind.quantity == "circumferential_backlash":
-        return 1.0 / math.cos(model.mesh(kind.mesh).pair.working_pressure_angle)
+        pair = model.mesh(kind.mesh).pair
+        return 1.0 / (math.cos(pair.working_pressure_angle) * pair.base_helix_cosine)
     return 1.0 / model.gear(kind.gear).gear.section_arm
 
 
@@ -211,7 +175,7 @@ def analytic_transmission_error(
         for columns, wave in _waves(model, backlash, driver):
             for column, own in zip(columns, wave, strict=True):
                 total += np.multiply.outer(deviations[:, column], factor * (own - own[0]))
-        if teeth_deviate(model, model.mesh(backlash.mesh)):
+        if stack_of(model, model.mesh(backlash.mesh), backlash.reading).turns_by_teeth:
             turned = _turned_by_teeth(model, backlash, deviations, driver)
             total += factor * (turned - turned[:, :1])
     return total

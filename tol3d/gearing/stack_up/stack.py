@@ -50,15 +50,17 @@ class Stack(NominalMesh[Pair]):
             total = total + term.change(deviations[:, self.model.component_slices[term.contributor.name]], angles)
         if self.teeth:
             return total - self._lost_by_teeth(self.teeth, deviations, driver_angle, total, turns)
-        return total - self.lost(*self._lost_by_tilts(deviations))
+        return total - self.lost(*self._lost_by_tilts(deviations), driver_angle)
 
     @property
     def both_sides_alike(self) -> bool:
         """True if both flank sides are read at the same place of the face; else tilts count on the working one only."""
         return self.reading.contact == self.reading.gap
 
-    def lost(self, in_plane: Array, across: Array) -> Array:
+    def lost(self, in_plane: Array, across: Array, driver_angle: Array | None = None) -> Array:
         """Loss of normal backlash by tilts [mm], (rows,), from their parts in the plane of the axes and across it.
+
+        The driver's turns [rad] (rows,) do not matter here; of helical gears they do.
 
         Half a face times |a + b| on the side of the driver's right flanks, |a - b| on the other: 2 max(|a|, |b|) of
         both together.
@@ -94,6 +96,11 @@ class Stack(NominalMesh[Pair]):
         working = teeth.taken(work, built, driver_angle, leans[work], moved)
         apart = np.maximum(whole - working, 0.0)
         return working + teeth.taken(-work, built, driver_angle, leans[-work], moved, turns, apart)
+
+    @property
+    def turns_by_teeth(self) -> bool:
+        """True if what rests turns the driven gear from position to position, as other teeth come into contact."""
+        return self.teeth is not None
 
     def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
         """Turn of the driven gear about its z [mm at its arm] by single flanks where a side touches.
@@ -156,13 +163,17 @@ class Stack(NominalMesh[Pair]):
             moved = self._moved(deviations, driver_angle)
             right, left = (self.teeth.taken(side, built, driver_angle, leans[side], moved) for side in (1, -1))
             total = (right - left) / 2
-        elif self.both_sides_alike:
-            total = self.sense * (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4
         else:
-            total = self.mesh.driven_flank * self.lost(in_plane, across) / 2
+            total = self._aside_by_tilts(in_plane, across, driver_angle)
         for term in self.sideways:
             total = total + term.change(deviations[:, self.model.component_slices[term.contributor.name]], angles)
         return total
+
+    def _aside_by_tilts(self, in_plane: Array, across: Array, driver_angle: Array) -> Array:
+        """Part of `aside` by tilts [mm], (rows,): half of the difference of both sides' losses."""
+        if self.both_sides_alike:
+            return np.asarray(self.sense * (np.abs(in_plane + across) - np.abs(in_plane - across)) / 4)
+        return np.asarray(self.mesh.driven_flank * self.lost(in_plane, across) / 2)
 
     @property
     def neglects(self) -> tuple[Neglect, ...]:

@@ -2,7 +2,8 @@
 
 The nominal mesh of a stack-up: azimuth of each gear's mate, and the opening by its shifts.
 
-alpha_w is the working pressure angle, delta the pitch angle of a gear (0 for a cylinder).
+alpha_w is the working pressure angle, delta the pitch angle of a gear (0 for a cylinder). Of helical gears alpha_w is
+that of the transverse section, and what happens in that section counts cos(beta_b) of itself along the normals.
 """
 
 import math
@@ -104,7 +105,9 @@ Pair = TypeVar("Pair", bound=GearPair, covariant=True)
 class NominalMesh(Generic[Pair]):
     """One mesh of a model, for one of its readings; `pair` is the mesh's.
 
-    `sense` is that in which the driven gear turns to leave the driver's right flanks: 1, of an internal pair -1.
+    `sin` and `cos` are those of alpha_w, times cos(beta_b) of helical gears: the parts along the normals of shifts in
+    the plane of the axes and across it. `sense` is that in which the driven gear turns to leave the driver's right
+    flanks: 1, of an internal pair -1.
     """
 
     def __init__(self, model: Model, mesh: Mesh, pair: Pair, reading: Reading) -> None:
@@ -112,8 +115,8 @@ class NominalMesh(Generic[Pair]):
         self.mesh = mesh
         self.pair = pair
         self.reading = reading
-        self.sin = math.sin(pair.working_pressure_angle)
-        self.cos = math.cos(pair.working_pressure_angle)
+        self.sin = math.sin(pair.working_pressure_angle) * pair.base_helix_cosine
+        self.cos = math.cos(pair.working_pressure_angle) * pair.base_helix_cosine
         self.sense = float(pair.mating_flank(RIGHT))
 
     def role(self, part: str, mesh: str | None = None) -> Role | None:
@@ -138,6 +141,11 @@ class NominalMesh(Generic[Pair]):
     def along(self, role: Role) -> float:
         """Opening by a shift along the axis, away from the apex: 2 sin(alpha_w) sin(delta)."""
         return 2 * self.sin * math.sin(self.gear(role).pitch_angle)
+
+    def screwed(self, role: Role) -> float:
+        """Turn of the driven gear [mm at its arm] by a shift of a gear along its axis: kappa2 (dz2 - dz1)."""
+        turn = self.pair.wheel.twist * self.pair.wheel.section_arm
+        return turn if role == "driven" else -turn
 
     def azimuth_away(self, role: Role) -> float:
         """Azimuth [rad], in the gear's frame at rest in the mesh, in which a shift of its axis opens."""

@@ -138,17 +138,21 @@ def _anywhere(effect: AxisOffset, mesh: NominalMesh[GearPair], contributor: Cont
 def _along_direction(
     effect: AxisOffset, mesh: NominalMesh[GearPair], contributor: Contributor, role: Role
 ) -> Contribution:
-    """A shift towards the mesh moves the apex along the pitch line by sin(delta), one along the axis by cos(delta)."""
+    """A shift towards the mesh moves the apex along the pitch line by sin(delta), one along the axis by cos(delta).
+
+    A helical gear screws in its mate's teeth as it moves along its axis: the driven one turns, and nothing opens.
+    """
     x, y, z = effect.direction
     away = mesh.on_shaft(mesh.azimuth_away(role), role, effect.mesh)
     onwards = mesh.on_shaft(mesh.azimuth_onwards(role), role, effect.mesh)
     leaving = x * math.cos(away) + y * math.sin(away)
+    turning = x * math.cos(onwards) + y * math.sin(onwards)
     opening = Term(contributor, effect.factor * (mesh.across(role) * leaving + mesh.along(role) * z))
     delta, lengthwise = mesh.gear(role).pitch_angle, effect.factor * z
     left = (opening.coefficient - mesh.along(role) * lengthwise) / mesh.across(role)
     return Contribution(
         opening=opening,
-        aside=Term(contributor, mesh.cos * effect.factor * (x * math.cos(onwards) + y * math.sin(onwards))),
+        aside=Term(contributor, mesh.cos * effect.factor * turning + mesh.screwed(role) * effect.factor * z),
         by_shifts=opening,
         along_line=Term(contributor, _sense(role) * (math.cos(delta) * lengthwise - math.sin(delta) * left)),
     )
@@ -193,7 +197,9 @@ def _leaning(effect: AxisTilt, mesh: NominalMesh[SpurPair | InternalPair], contr
 
     In plane (about y): b sin(alpha_w); out of plane (about x): b cos(alpha_w); b the smaller face width. `Stack.lost`
     decides which ends are the tighter ones; the loss is one-sided and shifts the mean. A flank side that is read in
-    the middle of the face loses nothing, nor do gears that lean alike: a driver's lean counts against its mate's.
+    the middle of the face loses nothing, nor do gears that lean alike: a driver's lean counts against its mate's. Of
+    helical gears b/2 stands for the end of the face; see HelicalStack for the contact lines, which end elsewhere too. A
+    turn in the plane of the axes moves the teeth at the mesh along the axis, r_w of it: they screw.
     """
     if (role := mesh.role(effect.part, effect.mesh)) is None:
         return NOTHING
@@ -204,7 +210,12 @@ def _leaning(effect: AxisTilt, mesh: NominalMesh[SpurPair | InternalPair], contr
     away = math.cos(mesh.azimuth_away("driven"))  # -1 where the driven axis at +x lies nearer to the ring's teeth
     in_plane, across = per_tilt * away * mesh.sin * y, per_tilt * mesh.cos * x
     largest = float(np.abs([in_plane, across]).max())
-    return Contribution(Term(contributor, largest, tilts=(tuple(in_plane.tolist()), tuple(across.tolist()))))
+    opening = Term(contributor, largest, tilts=(tuple(in_plane.tolist()), tuple(across.tolist())))
+    if not mesh.pair.pinion.helix_angle:
+        return Contribution(opening)
+    radius = mesh.pair.working_radii[0 if role == "driver" else 1]
+    screwed = mesh.screwed("driven") * radius  # the driver's teeth are on the other side of its axis
+    return Contribution(opening, aside=_turned(contributor, (x, y), per_y=screwed))
 
 
 def _turns(effect: AxisTilt, mesh: NominalMesh[GearPair], contributor: Contributor, role: Role) -> tuple[Array, Array]:

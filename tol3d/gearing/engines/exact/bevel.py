@@ -17,6 +17,7 @@ from tol3d.gearing.engines.exact.foot import (
     grown,
     line_of_action,
     section,
+    straight,
     turn_to,
 )
 from tol3d.gearing.engines.exact.numbers import NOWHERE, Facing, Foot, Nearest, Pose, arcsine, sine
@@ -48,6 +49,7 @@ class BevelTooth(NamedTuple):
 
 
 external(BevelTooth)
+straight(BevelTooth)
 
 
 @variant(grown, BevelTooth)

@@ -7,7 +7,7 @@ millimetres. Neglected terms are of the order of (its slope)^2 times itself, 1e-
 import math
 from typing import Any, NamedTuple
 
-from tol3d.gearing.engines.exact.foot import external, flank_of, foot, grown, line_of_action, section, turn_to
+from tol3d.gearing.engines.exact.foot import external, flank_of, foot, grown, line_of_action, section, straight, turn_to
 from tol3d.gearing.engines.exact.numbers import CLOSED, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.spur import SpurTooth
 from tol3d.numerics.compiled import part, variant
@@ -146,6 +146,7 @@ def offset_at(tooth: DeviatedTooth, roll: float, z: float) -> Offset:
 
 
 external(DeviatedTooth)
+straight(DeviatedTooth)
 
 
 @variant(grown, DeviatedTooth)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tol3d.gearing.engines.exact.foot import flank_of, handed, opening, section
+from tol3d.gearing.engines.exact.foot import first_face, flank_of, handed, leaning, opening, promise, section
 from tol3d.gearing.engines.exact.nearest import QUICK_FALL, nearest
 from tol3d.gearing.engines.exact.numbers import (
     ALIKE,
@@ -233,11 +233,14 @@ def pair_nearest(
         build, at: the build, and the positions of its gears.
         sigma, tooth: side, and tooth of the driver.
         pose: as pose_at gives it.
-        own: what is looked at of the driver's teeth; the search begins at `face` [mm] on it.
+        own: what is looked at of the driver's teeth; the search begins at `face` [mm] on it, from its middle.
         per_turn, last_fall: as in nearest.lowest.
     """
     own_azimuth, mate_azimuth = azimuths(build, at, sigma, tooth)
     start = start_on(build, pose, sigma, own_azimuth)
+    lean = leaning(own, sigma)
+    if lean != 0.0:
+        start -= lean * face
     return nearest(
         flank_of(own, build.flanks, 0, tooth, sigma),
         flank_of(build.driven, build.flanks, 1, mating_tooth(build.driven, tooth, sigma), sigma),
@@ -279,10 +282,18 @@ def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
     gap, turn, edge_turn, doubtful, least = math.inf, math.inf, math.inf, math.inf, math.inf
     best_tooth, acts = 0, True
     x, y, z, nx, ny, nz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    face = first_face(own, build.driven, pose, sigma, middle.low)
     in_middle = (0.5 * (pair.lowest + pair.highest) - sigma * at.driver) / pair.driver_pitch
+    first_order = math.inf
     for step in range(count):
         tooth = sigma * middle_first(step, first, count, in_middle)
-        near = pair_nearest(build, at, sigma, tooth, pose, own, middle.low, look.per_turn, QUICK_FALL)
+        if one_base_pitch and leaning(own, sigma) != 0.0:
+            start = start_on(build, pose, sigma, azimuths(build, at, sigma, tooth)[0])
+            order, leeway = promise(own, build.driven, pose, sigma, start, abs(gap) if gap < math.inf else 0.0)
+            if order > first_order + leeway:
+                continue
+            first_order = min(first_order, order)
+        near = pair_nearest(build, at, sigma, tooth, pose, own, face, look.per_turn, QUICK_FALL)
         if near.gap == math.inf:
             continue
         if look.teeth != ALL_TEETH:

@@ -84,11 +84,68 @@ def widest(driver: Any, driven: Any, tangent: float) -> float:
     raise NotImplementedError
 
 
+def leaning(tooth: Any, sigma: float) -> float:
+    """Fall of the profile parameter along a generator of a flank per step along the face; one variant a kind.
+
+    [rad/mm] for the kinds whose generators are no lines of a constant parameter: helical gears; 0 of all others.
+    """
+    raise NotImplementedError
+
+
+def first_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> float:
+    """Height on own face at which to start a search [mm]; one variant a kind.
+
+    Args:
+        own, mate: the gears' teeth.
+        pose: mate from own.
+        sigma: side of the flanks.
+        face: the middle of the common face.
+    """
+    raise NotImplementedError
+
+
+def promise(own: Any, mate: Any, pose: Any, sigma: float, start: float, apart: float) -> tuple[float, float]:
+    """Order in which the pairs of one base pitch touch as axes lean, and its leeway; one variant a kind.
+
+    A pair that comes later than another by more than the leeway is not nearest. (0, 0) where nothing is known.
+
+    Args:
+        own, mate: the gears' teeth.
+        pose: mate from own.
+        sigma: side of the flanks.
+        start: profile parameter of own flank of a pair, in the middle of the face.
+        apart: size of the gap [mm], about.
+    """
+    raise NotImplementedError
+
+
 def external(kind: type) -> None:
     """Register the gears of a kind as external; see foot.py."""
     variant(opening, kind)(external_opening)
     variant(handed, kind)(external_side)
     variant(widest, kind)(external_radius)
+
+
+def straight(kind: type) -> None:
+    """Register a kind of teeth whose generators keep their profile parameter along the face."""
+    variant(leaning, kind)(straight_leaning)
+    variant(first_face, kind)(middle_face)
+    variant(promise, kind)(no_promise)
+
+
+def middle_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> float:
+    """The middle."""
+    return face
+
+
+def no_promise(own: Any, mate: Any, pose: Any, sigma: float, start: float, apart: float) -> tuple[float, float]:
+    """Any may touch."""
+    return 0.0, 0.0
+
+
+def straight_leaning(tooth: Any, sigma: float) -> float:
+    """The parameter stays."""
+    return 0.0
 
 
 def external_opening(driven: Any) -> float:

@@ -20,6 +20,7 @@ from tol3d.gearing.engines.exact.foot import (
     line_of_action,
     opening,
     section,
+    straight,
     turn_to,
     widest,
 )
@@ -48,6 +49,9 @@ class InternalTooth(NamedTuple):
     low: float
     high: float
     sense: float
+
+
+straight(InternalTooth)
 
 
 @variant(grown, InternalTooth)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.deviated_rows import gap_deviated_rows, read_deviated_rows, rest_deviated_rows
+from tol3d.gearing.engines.exact.helical import HelicalTooth
 from tol3d.gearing.engines.exact.internal import InternalTooth
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rests import rest_rows
@@ -35,12 +36,15 @@ READ_DEVIATED, GAPS_DEVIATED, REST_DEVIATED = (
 
 SPUR = (SpurTooth, SpurTooth, PairNumbers, Pose)
 DEVIATED = (DeviatedTooth, DeviatedTooth, PairNumbers, Pose)
+HELICAL = (HelicalTooth, HelicalTooth, PairNumbers, Pose)
 INTERNAL = (InternalTooth, InternalTooth, PairNumbers, Pose)
 BEVEL = (BevelTooth, BevelTooth, PairNumbers, Pose)
 
 spur_read, spur_gaps = Kernel(read_rows, SPUR, READ), Kernel(gap_rows, SPUR, GAPS)
 bevel_read, bevel_gaps = Kernel(read_rows, BEVEL, READ), Kernel(gap_rows, BEVEL, GAPS)
 spur_rests, bevel_rests = Kernel(rest_rows, SPUR, REST), Kernel(rest_rows, BEVEL, REST)
+helical_read, helical_gaps = Kernel(read_rows, HELICAL, READ), Kernel(gap_rows, HELICAL, GAPS)
+helical_rests = Kernel(rest_rows, HELICAL, REST)
 internal_read, internal_gaps = Kernel(read_rows, INTERNAL, READ), Kernel(gap_rows, INTERNAL, GAPS)
 internal_rests = Kernel(rest_rows, INTERNAL, REST)
 deviated_read = Kernel(read_deviated_rows, DEVIATED, READ_DEVIATED)
@@ -90,9 +94,19 @@ def _(pair: SpurPair) -> PairKernels:
         by_tilt_x=0.0,
         by_tilt_y=0.0,
     )
+    if pair.pinion.helix_angle:
+        helical = (_helical(pair.pinion), _helical(pair.wheel), numbers, _nominal(pair))
+        return PairKernels(helical, helical_read, helical_gaps, helical_rests)
     return PairKernels(
         (_spur(pair.pinion), _spur(pair.wheel), numbers, _nominal(pair)), spur_read, spur_gaps, spur_rests
     )
+
+
+def _helical(gear: SpurGear) -> HelicalTooth:
+    half, sine = gear.face_width / 2, gear.hand * math.sin(gear.base_helix_angle)
+    helix = (gear.base_helix_cosine, sine, gear.twist)
+    profile = (gear.base_half_angle, gear.form_roll, gear.tip_roll)
+    return HelicalTooth(gear.base_radius, 1.0 / gear.section_arm, *helix, *profile, -half, half)
 
 
 def _spur(gear: SpurGear) -> SpurTooth:

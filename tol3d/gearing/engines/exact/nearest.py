@@ -7,7 +7,7 @@ needed of a kind of gears.
 import math
 from typing import Any
 
-from tol3d.gearing.engines.exact.foot import foot, line_of_action, turn_to
+from tol3d.gearing.engines.exact.foot import foot, leaning, line_of_action, turn_to
 from tol3d.gearing.engines.exact.numbers import AT_EDGE, BEYOND, CLOSED, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.numerics.compiled import part
 
@@ -16,6 +16,7 @@ QUICK_FALL = 1e-8  # mm; enough for the gap: it is a parabola to 1e-4 of such a 
 SHARP_FALL = 1e-14  # mm; for points and normals too
 END = 1e-9  # mm; a foot so near to an end of the face is at it
 SHORT = 1e-3  # mm; of a last step along the face
+LEVEL = 1e-13  # fall per length along a generator that is no more than rounding
 FLAT = 1e-15  # 1/mm; bow of the gap along the face that is no more than rounding
 
 
@@ -27,6 +28,43 @@ def down_to(slope: float, bow: float, low: float, high: float) -> float:
     if slope == 0.0:
         return min(max(0.0, low), high)
     return low if slope > 0.0 else high
+
+
+@part
+def started(own: Any, lean: float, start: float, face: float) -> tuple[float, float]:
+    """The start on own flank for a profile parameter and a face: along its generator as far as the profile goes."""
+    if lean != 0.0:
+        beyond = start - min(max(start, own.begin), own.end)
+        moved = min(max(face + beyond / lean, own.low), own.high)
+        start, face = start - lean * (moved - face), moved
+    return min(max(start, own.begin), own.end), face
+
+
+@part
+def slanted(
+    own: Any, lean: float, at: Foot, place: tuple[float, float], by_face: float, along: float, ends: tuple[float, float]
+) -> tuple[float, float]:
+    """The steps across the generators and along them to the lowest gap over a flank whose generators lean.
+
+    On an end of the profile a step along the face takes `lean` times itself across the generators.
+
+    Args:
+        own: its teeth.
+        lean: see foot.leaning.
+        at: the foot at `place`, (profile, face).
+        by_face: derivative of the gap along the generator.
+        along: step along it to the lowest gap, were the profile endless.
+        ends: of that step, where the common face ends.
+    """
+    profile, per_bend = place[0], 1.0 / at.bend
+    moved = profile - (at.by_profile + at.twist * along) * per_bend - lean * along
+    end = min(max(moved, own.begin), own.end)
+    if end != moved:
+        first = end - profile
+        slope = by_face + at.twist * first + lean * (at.by_profile + at.bend * first)
+        along = down_to(slope, at.bow + lean * (2.0 * at.twist + lean * at.bend), ends[0], ends[1])
+        moved = profile - (at.by_profile + at.twist * along) * per_bend - lean * along
+    return min(max(moved, own.begin), own.end) - profile + lean * along, along
 
 
 @part
@@ -43,7 +81,8 @@ def lowest(
         per_turn: 1 to look for the smallest turn of the mate, 0 for the smallest gap.
         last_fall: [mm], a step that lowers the gap by less is the last; it is not looked at again.
     """
-    profile = min(max(start, own.begin), own.end)
+    lean = leaning(own, facing.sigma)
+    profile, face = started(own, lean, start, face)
     fall, steps = 0.0, STEPS
     while True:
         at = foot(own, mate, pose, facing, profile, face)
@@ -58,7 +97,11 @@ def lowest(
         along = down_to(slope, at.bow - at.twist * at.twist * per_bend, low - face, high - face)
         moved = profile - (at.by_profile + at.twist * along) * per_bend
         aside = min(max(moved, own.begin), own.end) - profile
-        if profile + aside != moved:
+        if lean != 0.0:
+            if abs(slope) < LEVEL:  # parallel axes: all of a generator is as near
+                along = min(max(0.0, low - face), high - face)
+            aside, along = slanted(own, lean, at, (profile, face), by_face, along, (low - face, high - face))
+        elif profile + aside != moved:
             # held by an end of the profile: along the face the gap falls as it does there
             along = down_to(by_face + at.twist * aside, at.bow, low - face, high - face)
             moved = profile - (at.by_profile + at.twist * along) * per_bend
@@ -66,6 +109,8 @@ def lowest(
         fall = at.by_profile * aside + by_face * along
         fall += 0.5 * (at.bend * aside * aside + at.bow * along * along) + at.twist * aside * along
         profile += aside
+        if lean != 0.0:
+            profile -= lean * along
         face += along
         steps -= 1
         if (abs(fall) < last_fall and abs(along) < SHORT) or steps == 0:
@@ -105,6 +150,8 @@ def nearest(
         gap = at.gap + fall
         turn = turn_to(mate, gap, offset, at)
         how = CLOSED if mate.begin <= at.touching <= mate.end else AT_EDGE
+        if leaning(mate, facing.sigma) != 0.0 and not mate.low + SHORT < at.face < mate.high - SHORT:
+            how = AT_EDGE  # the foot moves along the mate's face as the gap closes
         if profile <= own.begin:  # below it there is neither flank nor edge
             how = BEYOND
         at_end = not own.begin < profile < own.end

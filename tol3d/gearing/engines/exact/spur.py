@@ -17,6 +17,7 @@ from tol3d.gearing.engines.exact.foot import (
     grown,
     line_of_action,
     section,
+    straight,
     turn_to,
 )
 from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
@@ -45,6 +46,7 @@ class SpurTooth(NamedTuple):
 
 
 external(SpurTooth)
+straight(SpurTooth)
 
 
 @variant(grown, SpurTooth)

@@ -1,5 +1,6 @@
 """Tolerances of a gear as a whole, and of its seat on the shaft."""
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal, Self
 
@@ -7,11 +8,17 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from typing_extensions import override
 
 from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
-from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec, ShaftSpec, SpurGearSpec
+from tol3d.gearing.grammar.parts import (
+    ExternalGearSpec,
+    GearSpec,
+    HelicalGearSpec,
+    InternalGearSpec,
+    ShaftSpec,
+)
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, Nominal, Unit, in_direction
 from tol3d.gears import Gear, InternalGear
 from tol3d.gears.cylindrical_gear import CylindricalGear
-from tol3d.gears.tooth_measures import OverPins, PinScale, Span, ToothMeasure
+from tol3d.gears.tooth_measures import OverBalls, OverPins, PinScale, Span, ToothMeasure
 from tol3d.scene.bases import Length, MoveSpec, PartSpec
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.entry import Entry
@@ -122,16 +129,20 @@ class RunOutSpec(GearToleranceSpec):
 
 
 class MeasuredOverSpec(Strict):
-    """`{span: 4}` or `{pins: 3.5 mm}`: how the teeth of a spur gear or a ring are measured."""
+    """`{span: 4}`, `{pins: 3.5 mm}` or `{balls: 3.5 mm}`: how teeth of a cylindrical gear are measured.
+
+    Pins and balls of the same diameter give the same size, except over an odd number of helical teeth.
+    """
 
     span: int | None = Field(default=None, ge=1, description="over so many teeth, of a ring over so many spaces")
     pins: Length | None = Field(
-        default=None, description="diameter of two pins or balls, over which it is measured, in a ring between them"
+        default=None, description="diameter of two pins, over which it is measured, in a ring between them"
     )
+    balls: Length | None = Field(default=None, description="diameter of two balls in one transverse plane, likewise")
 
     @model_validator(mode="after")
     def _refuse_other_than_one(self) -> Self:
-        given = [name for name in ("span", "pins") if getattr(self, name) is not None]
+        given = [name for name in ("span", "pins", "balls") if getattr(self, name) is not None]
         if len(given) != 1:
             raise refused("", "either a span such as {span: 4}, or {pins: 3.5 mm}", " and ".join(given) or "neither")
         return self
@@ -139,7 +150,14 @@ class MeasuredOverSpec(Strict):
     @property
     def measure(self) -> ToothMeasure:
         """Measure of it on any gear."""
+        if self.balls is not None:
+            return OverBalls(self.balls.internal)
         return Span(self.span or 0) if self.pins is None else OverPins(self.pins.internal)
+
+    @property
+    def key(self) -> str:
+        """The word under which it is stated."""
+        return next(name for name in ("span", "pins", "balls") if getattr(self, name) is not None)
 
 
 def _measured_shape(value: object) -> str:
@@ -182,9 +200,12 @@ class ToothThicknessSpec(GearToleranceSpec):
     @override
     def size(self, standard: str, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> float | None:
         gear = parts.get(self.of)
-        if standard != "din_3967" or self.measured != "arc" or not isinstance(gear, SpurGearSpec | InternalGearSpec):
+        if standard != "din_3967" or self.measured != "arc":
             return None
-        return gear.teeth * gear.module.internal
+        if not isinstance(gear, ExternalGearSpec | InternalGearSpec):
+            return None
+        helix = gear.helix_angle.internal if isinstance(gear, HelicalGearSpec) else 0.0
+        return gear.teeth * gear.module.internal / math.cos(helix)
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""

@@ -1,0 +1,241 @@
+"""Helical gears and pairs: worked cases, limits, spans, balls and pins against searches of sampled flanks."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.screw_flanks import ScrewGear, ball_distance, caliper, pin_distance
+
+from tol3d.errors import GeometryError
+from tol3d.gears import LEFT_HAND, RIGHT_HAND, Hand, InternalGear, InternalPair, SpurGear, SpurPair
+from tol3d.gears.tooth_measures import OverBalls, OverPins, PinScale, Span, pins_of, span_of
+
+ALPHA = math.radians(20.0)
+CLOSED_FORM = 1e-9  # mm
+ROUNDED = 5e-10  # mm and rad; what worked cases are printed to, in um and mrad
+
+
+def helical(teeth: int, module: float, beta: float, hand: Hand, face: float, **more: Any) -> SpurGear:
+    """A gear of the worked cases, its helix angle in degrees."""
+    return SpurGear(teeth, module, ALPHA, face, helix_angle=math.radians(beta), hand=hand, **more)
+
+
+def base_pair(
+    centre_distance: float = 53.0, shift: float = 0.5441135839, thinner: tuple[float, float] = (0.06, 0.08)
+) -> SpurPair:
+    """The pair of most worked cases: 23 right-hand, 67 left-hand teeth, 30 deg."""
+    pinion = helical(23, 1.0, 30.0, RIGHT_HAND, 16.0, profile_shift=0.55, tooth_thickness_deviation=-thinner[0])
+    wheel = helical(67, 1.0, 30.0, LEFT_HAND, 11.0, profile_shift=shift, tooth_thickness_deviation=-thinner[1])
+    return SpurPair(pinion, wheel, centre_distance)
+
+
+def test_backlash_of_the_worked_pair_is_its_closed_form() -> None:
+    pair = base_pair()
+    assert pair.normal_backlash == pytest.approx(131.556967e-3, abs=ROUNDED)
+    assert pair.normal_backlash == pytest.approx(0.14 * math.cos(ALPHA), abs=1e-6)  # thinning alone: E_sn cos alpha_n
+    assert math.degrees(pair.working_pressure_angle) == pytest.approx(25.334158, abs=5e-7)
+    assert pair.angular_backlash[1] == pytest.approx(4.179104478e-3, abs=5e-13)
+    assert float(pair.driven_angle(np.array(1.1))) == pytest.approx(2.810870156, abs=ROUNDED)
+    assert pair.circumferential_backlash == pytest.approx(
+        pair.angular_backlash[1] * pair.working_radii[1], abs=CLOSED_FORM
+    )
+
+
+def test_twist_and_backlash_of_the_second_worked_pair() -> None:
+    pinion = helical(24, 2.0, 15.0, RIGHT_HAND, 20.0, tooth_thickness_deviation=-0.06)
+    wheel = helical(47, 2.0, 15.0, LEFT_HAND, 20.0, tooth_thickness_deviation=-0.08)
+    pair = SpurPair(pinion, wheel, 73.504608809)
+    assert wheel.twist == pytest.approx(-0.005506788, abs=ROUNDED)
+    assert wheel.twist == pytest.approx(-2 * math.pi / wheel.lead, rel=1e-14)
+    assert pair.normal_backlash == pytest.approx(131.556967e-3, abs=ROUNDED)
+
+
+@pytest.mark.parametrize(
+    ("opened", "normal", "arc"), [(0.015, 218.071e-3, 273.400e-3), (-0.015, 129.629e-3, 162.427e-3)]
+)
+def test_arcs_of_a_catalogue_pair_are_the_printed_ones(opened: float, normal: float, arc: float) -> None:
+    """23/67 at 30 deg, c25 and js7: teeth as thin as give the normal backlash have the arc on the working circle."""
+    thinner = (normal - base_pair(53.0 + opened, thinner=(0.0, 0.0)).normal_backlash) / math.cos(ALPHA)
+    made = base_pair(53.0 + opened, thinner=(thinner, 0.0))
+    assert made.normal_backlash == pytest.approx(normal, abs=CLOSED_FORM)
+    assert made.circumferential_backlash == pytest.approx(arc, abs=1e-6)  # printed in um with three decimals
+
+
+@pytest.mark.parametrize(
+    ("teeth", "module", "beta", "shifts"), [((27, 51), 4.5, 21.0, 0.462830), ((23, 34), 6.5, 10.0, 0.301479)]
+)
+def test_a_public_gearbox_is_free_of_backlash_by_its_shifts(
+    teeth: tuple[int, int], module: float, beta: float, shifts: float
+) -> None:
+    pinion = helical(teeth[0], module, beta, RIGHT_HAND, 50.0, profile_shift=0.6 * shifts)
+    wheel = helical(teeth[1], module, beta, LEFT_HAND, 50.0, profile_shift=0.4 * shifts)
+    pair = SpurPair(pinion, wheel, 190.0)
+    assert abs(pair.normal_backlash) < 5e-6
+    pair.refuse_interference()
+
+
+PROPERTIES = (
+    "base_radius", "tip_radius", "root_radius", "base_half_angle", "form_roll", "tip_roll", "tooth_thickness",
+    "tip_thickness", "normal_tip_thickness", "section_arm", "thickness_radius", "section_tip", "undercut_limit_shift",
+    "undercut_radius", "outline_area", "fillet_radius",
+)  # fmt: skip
+
+
+def test_a_helix_that_vanishes_gives_the_spur_gear() -> None:
+    spur = SpurGear(17, 2.5, ALPHA, 20.0, profile_shift=0.1, tooth_thickness_deviation=-0.05)
+    mate = SpurGear(40, 2.5, ALPHA, 18.0, tooth_thickness_deviation=-0.02)
+    leaning = replace(spur, helix_angle=1e-8), replace(mate, helix_angle=1e-8, hand=LEFT_HAND)
+    for name in PROPERTIES:
+        assert getattr(leaning[0], name) == pytest.approx(getattr(spur, name), rel=1e-12, abs=1e-12), name
+    ours, theirs = SpurPair(*leaning, 71.6), SpurPair(spur, mate, 71.6)
+    assert ours.normal_backlash == pytest.approx(theirs.normal_backlash, abs=1e-12)
+    assert Span(3).size(leaning[0]) == pytest.approx(Span(3).size(spur), abs=1e-12)
+    assert OverBalls(4.5).size(leaning[0]) == pytest.approx(OverPins(4.5).size(spur), abs=1e-12)
+
+
+def test_a_spur_gear_of_either_hand_is_the_same_to_the_last_bit() -> None:
+    spur = SpurGear(17, 2.5, ALPHA, 20.0, profile_shift=0.1)
+    for name in PROPERTIES:
+        assert getattr(replace(spur, hand=LEFT_HAND), name) == getattr(spur, name)
+    assert spur.section_arm == spur.base_radius == 2.5 * 17 / 2 * math.cos(ALPHA)
+
+
+def test_span_of_the_worked_gear_and_the_face_it_needs() -> None:
+    gear = helical(23, 1.0, 30.0, RIGHT_HAND, 16.0, profile_shift=0.55)
+    assert Span(5).size(gear) == pytest.approx(14.145235271, abs=ROUNDED)
+    assert Span(5).least_face_width(gear) == pytest.approx(6.646087, abs=5e-7)
+    Span(5).require_reach(gear)
+    with pytest.raises(GeometryError, match=r"6\.6461 mm apart along the axis, on a face only 6 mm wide"):
+        Span(5).require_reach(replace(gear, face_width=6.0))
+
+
+def random_gears(count: int) -> list[tuple[SpurGear, ScrewGear]]:
+    """Gears of ours and the oracle's, odd and even teeth, both hands."""
+    rng, found = np.random.default_rng(52), list[tuple[SpurGear, ScrewGear]]()
+    while len(found) < count:
+        teeth, module = int(rng.integers(12, 90)), float(rng.uniform(0.8, 6.0))
+        alpha, beta = (math.radians(rng.uniform(*ends)) for ends in ((15.0, 25.0), (5.0, 40.0)))
+        hand, shift, thinner = (
+            int(rng.choice([-1, 1])),
+            float(rng.uniform(-0.2, 0.5)),
+            float(rng.uniform(0, 0.05)) * module,
+        )
+        try:
+            gear = SpurGear(
+                teeth, module, alpha, 30 * module, profile_shift=shift, tooth_thickness_deviation=-thinner,
+                helix_angle=beta, hand=RIGHT_HAND if hand > 0 else LEFT_HAND,
+            )  # fmt: skip
+        except GeometryError:
+            continue
+        if span_of(gear) and pins_of(gear):
+            found.append((gear, ScrewGear(teeth, module, alpha, beta, hand, 30 * module, shift, thinner)))
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("gear", "screw"), random_gears(20))
+def test_span_balls_and_pins_are_those_of_sampled_flanks(gear: SpurGear, screw: ScrewGear) -> None:
+    span, balls = span_of(gear), pins_of(gear, OverBalls)
+    assert span is not None
+    assert balls is not None
+    assert caliper(screw, span.teeth, 1.0 * span.least_face_width(gear)) == pytest.approx(span.size(gear), abs=2e-9)
+    odd = gear.teeth % 2 == 1
+    radius = (balls.size(gear) - balls.diameter) / 2 / (math.cos(math.pi / 2 / gear.teeth) if odd else 1.0)
+    assert ball_distance(screw, radius) == pytest.approx(balls.diameter / 2, abs=CLOSED_FORM)
+    pins = OverPins(balls.diameter)
+    centre = (pins.size(gear) - pins.diameter) / 2
+    lean = math.atan(gear.twist * centre)
+    assert pin_distance(screw, centre, lean) == pytest.approx(pins.diameter / 2, abs=CLOSED_FORM)
+    assert (pins.size(gear) > balls.size(gear) + 1e-4) == odd  # 2 r_K (1 - cos(pi/2z)), 30 um at the least here
+    for measure in (span, balls, pins):
+        low, high = gear.tooth_thickness - 0.02 * gear.module, gear.tooth_thickness
+        sizes = [measure.size(_as_thick(gear, own)) for own in (low, high)]
+        again = [measure.thickness(gear, size) for size in sizes]
+        assert again == pytest.approx([low, high], abs=1e-10)
+    off = gear.module * np.array([-0.03, 0.0, 0.02])
+    for kind in (balls, pins):
+        scale = PinScale(gear, kind)
+        assert np.abs(scale.deviation(scale.measured(off)) - off).max() < 1e-10
+
+
+def _as_thick(gear: SpurGear, thickness: float) -> SpurGear:
+    return replace(gear, tooth_thickness_deviation=gear.tooth_thickness_deviation + thickness - gear.tooth_thickness)
+
+
+def test_a_ball_s_size_grows_with_the_thickness_as_derived() -> None:
+    """cos(alpha_t)/(sin(alpha_Kt) cos(beta)) per E_sn, times cos(pi/2z) over an odd number of teeth."""
+    gear, balls = helical(23, 1.0, 30.0, RIGHT_HAND, 16.0, profile_shift=0.2), OverBalls(2.0)
+    step = 1e-5
+    slope = (balls.size(_as_thick(gear, gear.tooth_thickness + step)) - balls.size(gear)) / step
+    centre = (balls.size(gear) - 2.0) / 2 / math.cos(math.pi / 46)
+    angle = math.acos(gear.base_radius / centre)
+    derived = math.cos(gear.transverse_pressure_angle) / (math.sin(angle) * math.cos(gear.helix_angle))
+    assert slope == pytest.approx(derived * math.cos(math.pi / 46), rel=1e-4)
+
+
+def test_a_gear_cut_at_the_limit_shift_has_its_fillet_at_the_base_circle() -> None:
+    """x_min = 1 - z sin^2 alpha_t/(2 cos beta): the rack's corner then passes the base circle's tangent point."""
+    gear = helical(15, 2.0, 25.0, RIGHT_HAND, 20.0)
+    limit = gear.undercut_limit_shift
+    corner = gear.reference_radius - gear.module * (1.0 - limit)  # the rack's corner on the line of centres
+    tangent_point = gear.base_radius * math.cos(gear.transverse_pressure_angle)
+    assert corner == pytest.approx(tangent_point, abs=1e-12)
+    assert replace(gear, profile_shift=limit + 1e-6).undercut_radius == gear.base_radius
+    below = replace(gear, profile_shift=limit - 0.3)
+    assert below.undercut_radius > below.base_radius
+
+
+def test_overlap_carries_a_pair_that_its_profile_alone_would_not() -> None:
+    steep = SpurPair(
+        helical(14, 1.0, 40.0, RIGHT_HAND, 8.0, addendum=0.75),
+        helical(15, 1.0, 40.0, LEFT_HAND, 8.0, addendum=0.75),
+        19.3,
+    )
+    assert steep.contact_ratio < 1.0 < steep.total_contact_ratio
+    assert steep.overlap_ratio == pytest.approx(
+        8 * math.tan(steep.pinion.base_helix_angle) / steep.pinion.transverse_base_pitch
+    )
+    steep.refuse_interference()
+    narrow = SpurPair(replace(steep.pinion, face_width=0.5), replace(steep.wheel, face_width=0.5), 19.3)
+    with pytest.raises(GeometryError, match=r"total contact ratio 0\.\d+ \(0\.\d+ over the profile\) is below 1"):
+        narrow.refuse_interference()
+
+
+def test_gears_whose_axes_would_cross_are_refused() -> None:
+    pair = base_pair()
+    with pytest.raises(GeometryError, match="opposite hands, got right and right"):
+        SpurPair(pair.pinion, replace(pair.wheel, hand=RIGHT_HAND), 53.0)
+    with pytest.raises(GeometryError, match="same helix_angle, got 30 deg and 29 deg"):
+        SpurPair(pair.pinion, replace(pair.wheel, helix_angle=math.radians(29.0)), 53.0)
+    with pytest.raises(GeometryError, match="same helix_angle, got 30 deg and 0 deg"):
+        SpurPair(pair.pinion, replace(pair.wheel, helix_angle=0.0), 53.0)
+    with pytest.raises(GeometryError, match="internal helical gears are not supported"):
+        InternalGear(79, 1.0, ALPHA, 10.0, helix_angle=0.1)
+    with pytest.raises(GeometryError, match="a helical gear meshes with external gears only"):
+        InternalPair(helical(27, 1.0, 5.0, RIGHT_HAND, 10.0), InternalGear(79, 1.0, ALPHA, 9.0, addendum=0.8), 26.0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"helix_angle": -0.1}, "helix_angle: expected 0 to 60 deg, got -5.7"),
+        ({"helix_angle": 1.1}, "helix_angle: expected 0 to 60 deg, got 63.0"),
+        ({"hand": 0}, "hand: expected 1 for a right-hand helix"),
+        ({"face_width": 100.0}, r"face_width: expected at most half of the helix's lead, 72\.\d+ mm, got 100 mm"),
+    ],
+)
+def test_impossible_helices_are_refused(changed: dict[str, Any], words: str) -> None:
+    with pytest.raises(GeometryError, match=words):
+        replace(base_pair().pinion, **changed)
+
+
+def test_pins_that_touch_the_middle_of_the_flank_are_proposed() -> None:
+    """The touching radius is missed by half a step of the diameters, times some 0.5 to 2 of radius per diameter."""
+    for gear, _ in random_gears(12):
+        pins = pins_of(gear)
+        assert pins is not None
+        wanted = min(max(gear.reference_radius + gear.profile_shift * gear.module, gear.form_radius), gear.tip_radius)
+        if pins.touches_at(gear) < gear.tip_radius - 0.1 * gear.module:
+            assert pins.touches_at(gear) == pytest.approx(wanted, abs=0.05)

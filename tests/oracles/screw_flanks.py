@@ -1,0 +1,175 @@
+"""Screw involute flanks by the polar equation of the transverse involute, with no foot point and no plane of action.
+
+A flank point has a radius and a height; its azimuth is half the tooth there, and the helix. Distances and turns are
+least values over grids that shrink about the best point. Nothing here comes from tol3d.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+GOLDEN = (math.sqrt(5.0) - 1) / 2
+GRID, ROUNDS, SHRINK = 41, 14, 0.2  # points a side; a grid reaches 0.4 of the one before, the last 4e-6 of the first
+
+
+@dataclass(frozen=True)
+class ScrewGear:
+    """A helical gear: normal module [mm], normal pressure angle and helix angle [rad], hand 1 or -1."""
+
+    teeth: int
+    module: float
+    alpha: float
+    beta: float
+    hand: int
+    face: float
+    shift: float = 0.0
+    thinner: float = 0.0
+    addendum: float = 1.0
+
+    @property
+    def reference(self) -> float:
+        """r [mm]."""
+        return self.module * self.teeth / (2 * math.cos(self.beta))
+
+    @property
+    def transverse(self) -> float:
+        """alpha_t [rad]."""
+        return math.atan2(math.tan(self.alpha), math.cos(self.beta))
+
+    @property
+    def base(self) -> float:
+        """r_b [mm]."""
+        return self.reference * math.cos(self.transverse)
+
+    @property
+    def tip(self) -> float:
+        """r_a [mm]."""
+        return self.reference + self.module * (self.addendum + self.shift)
+
+    @property
+    def twist(self) -> float:
+        """Azimuth per height [rad/mm]."""
+        return self.hand * math.tan(self.beta) / self.reference
+
+    def half_angle(self, radius: Array) -> Array:
+        """Half a tooth at radii [rad]."""
+        normal = self.module * (math.pi / 2 + 2 * self.shift * math.tan(self.alpha)) - self.thinner
+        at_reference = normal / math.cos(self.beta) / (2 * self.reference)
+        inv = [np.sqrt(np.maximum((own / self.base) ** 2 - 1, 0.0)) for own in (np.float64(self.reference), radius)]
+        first, second = (own - np.arctan(own) for own in inv)
+        return np.asarray(at_reference + first - second)
+
+    def points(self, radius: Array, z: Array, side: int, tooth: int, turn: float) -> Array:
+        """Points (..., 3) [mm] of a flank; side 1 is the right one, on the low-azimuth side of its tooth."""
+        azimuth = turn + 2 * math.pi * tooth / self.teeth + self.twist * z - side * self.half_angle(radius)
+        return np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z], axis=-1)
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A gear in the world: rotation (3, 3) of its axis's frame and its origin [mm], and its centre off the axis."""
+
+    gear: ScrewGear
+    rotation: Array
+    origin: Array
+    centre: tuple[float, float] = (0.0, 0.0)
+
+    def world(self, points: Array, turn: float) -> Array:
+        """Points of the gear's flanks, turned with it, in the world."""
+        (x, y), cos, sin = self.centre, math.cos(turn), math.sin(turn)
+        off = np.array([cos * x - sin * y, sin * x + cos * y, 0.0])
+        return np.asarray((points + off) @ self.rotation.T + self.origin)
+
+    def own(self, points: Array, turn: float) -> Array:
+        """Points of the world in the frame of the gear's centre, its axis as z."""
+        (x, y), cos, sin = self.centre, math.cos(turn), math.sin(turn)
+        off = np.array([cos * x - sin * y, sin * x + cos * y, 0.0])
+        return np.asarray((points - self.origin) @ self.rotation - off)
+
+
+def lag(driver: Placed, driven: Placed, turns: tuple[float, float], side: int, teeth: tuple[int, int]) -> float:
+    """Arc [mm] on the driven base circle by which a pair of flanks is apart, its least over both bounded flanks.
+
+    A point of one flank is that arc off the other one of the same height; below 0 they overlap. Flanks of the driven
+    gear end at its tip and at both ends of its face.
+    """
+    gear, mate = driver.gear, driven.gear
+
+    def apart(radius: Array, z: Array) -> Array:
+        points = driven.own(driver.world(gear.points(radius, z, side, teeth[0], turns[0]), turns[0]), turns[1])
+        rho = np.hypot(points[..., 0], points[..., 1])
+        azimuth = np.arctan2(points[..., 1], points[..., 0])
+        middle = turns[1] + 2 * math.pi * teeth[1] / mate.teeth + mate.twist * points[..., 2]
+        off = np.remainder(azimuth - middle + math.pi, 2 * math.pi) - math.pi
+        found = mate.base * (-side * off - mate.half_angle(rho))
+        outside = (rho > mate.tip) | (rho < mate.base) | (np.abs(points[..., 2]) > mate.face / 2)
+        return np.where(outside, np.inf, found)
+
+    return least(apart, (gear.base * 1.0001, -gear.face / 2), (gear.tip, gear.face / 2))
+
+
+def caliper(gear: ScrewGear, teeth: int, reach: float) -> float:
+    """Least distance [mm] of two parallel planes that touch the outer flanks over so many teeth, over all their tilts.
+
+    Each plane touches its flank where that reaches furthest along the planes' normal, no further than `reach` [mm] from
+    the middle of the face: on an endless one it would at any tilt but that of the generators.
+    """
+    at = math.pi * (teeth - 1) / gear.teeth  # a span symmetric about the tooth or space on +x
+
+    def width(lean: float) -> float:
+        z = np.linspace(-reach, reach, 9)[:, None]
+        first, last, furthest = np.zeros(z.shape), np.full(z.shape, 2.0), -math.inf
+        for _ in range(ROUNDS):  # at each height on grids of its own, which shrink about the best roll
+            roll = first + (last - first) * np.linspace(0.0, 1.0, GRID)
+            radius = gear.base * np.hypot(1.0, roll)
+            azimuth = at + gear.twist * z + gear.half_angle(radius)
+            reaches = radius * np.sin(azimuth) * math.cos(lean) - gear.hand * z * math.sin(lean)
+            best = np.take_along_axis(roll, np.argmax(reaches, axis=1)[:, None], axis=1)
+            furthest, half = max(furthest, float(reaches.max())), (last - first) * SHRINK
+            first, last = best - half, best + half
+        return 2 * furthest
+
+    low, high = 0.0, 1.9 * gear.beta  # beyond, planes touch other parts of the flanks
+    for _ in range(70):  # golden section: the width has a kink where the planes touch along generators
+        first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        low, high = (low, second) if width(first) < width(second) else (first, high)
+    return width((low + high) / 2)
+
+
+def ball_distance(gear: ScrewGear, centre: float) -> float:
+    """Least distance [mm] from a point in the middle of a space, at a radius in the plane z = 0, to its flank."""
+    return pin_distance(gear, centre, None)
+
+
+def pin_distance(gear: ScrewGear, centre: float, lean: float | None) -> float:
+    """The same to a straight line through that point, across the radius, that leans by an angle towards the helix."""
+    space = math.pi / gear.teeth
+    through = centre * np.array([math.cos(space), math.sin(space), 0.0])
+    lean_to = 0.0 if lean is None else lean
+    along = np.array([-math.sin(space) * math.sin(lean_to), math.cos(space) * math.sin(lean_to), math.cos(lean_to)])
+
+    def square(roll: Array, z: Array) -> Array:
+        apart = gear.points(gear.base * np.hypot(1.0, roll), z, -1, 0, 0.0) - through
+        found = (apart**2).sum(axis=-1)
+        return found if lean is None else found - (apart @ along) ** 2
+
+    return math.sqrt(least(square, (0.0, -3 * gear.module), (2.0, 3 * gear.module)))
+
+
+def least(function: Callable[[Array, Array], Array], low: tuple[float, float], high: tuple[float, float]) -> float:
+    """Least value of a function of two numbers between their ends, on grids that shrink about the best point."""
+    ends = np.array([low, high])
+    first, last, best = *ends.copy(), math.inf
+    for _ in range(ROUNDS):
+        one, other = (np.linspace(a, b, GRID) for a, b in zip(first, last, strict=True))
+        values = np.broadcast_to(function(*np.broadcast_arrays(one[:, None], other[None, :])), (GRID, GRID))
+        i, j = np.unravel_index(np.argmin(values), values.shape)
+        best = min(best, float(values[i, j]))
+        middle, reach = np.array([one[i], other[j]]), (last - first) * SHRINK
+        first, last = np.maximum(middle - reach, ends[0]), np.minimum(middle + reach, ends[1])
+    return best

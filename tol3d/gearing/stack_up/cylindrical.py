@@ -1,0 +1,117 @@
+"""Stack-ups of gears on parallel axes: spur gears, of which one may be internal, and helical ones."""
+
+import math
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from tol3d.gearing.model import Mesh, Model, Reading
+from tol3d.gearing.stack_up.contact_lines import ContactLines, lost
+from tol3d.gearing.stack_up.stack import Stack
+from tol3d.gearing.stack_up.term import Bound, Neglect, Term
+from tol3d.gears import InternalPair, SpurPair
+from tol3d.numerics.arrays import Array
+
+
+class SpurStack(Stack[SpurPair | InternalPair]):
+    """The stack-up of two spur gears, of which one may be internal.
+
+    Sources: ISO/TR 10064-3 (deviations of axes); ISO 21771-1:2024, 5.6 (nominal). Neglected: squares of deviations
+    (0.05 um on the inputs of Jiang et al.), and contact away from the pitch point: gears that grow by different
+    strains have different base pitches (up to 3.5 um for a pinion alone 20 K warmer).
+    """
+
+    @property
+    def neglects(self) -> tuple[Neglect, ...]:
+        """Base pitches that grow apart, and the nominal backlash that grows.
+
+        A pair whose contact lies s along the path from the pitch point gains or loses s times the difference of the
+        gears' strains, on each flank side; both sides may touch at the end of the longer part of the path. A pair
+        that grows as a whole scales its nominal backlash.
+        """
+        growth = {part: self._growth(part) for part in (self.mesh.driver, self.mesh.driven, self.mesh.housing) if part}
+        if not any(growth.values()):
+            return ()
+        apart = (*growth[self.mesh.driver], *(term.times(-1.0) for term in growth[self.mesh.driven]))
+        scaled = (Bound(abs(self.nominal), terms) for terms in growth.values())
+        return (
+            Neglect("base pitches of gears that grow by different strains", (Bound(2 * self._longest_path, apart),)),
+            Neglect("growth of the nominal backlash", tuple(scaled)),
+        )
+
+    def _growth(self, part: str) -> tuple[Term, ...]:
+        """Strain of a part by each temperature that acts on it [1/K]."""
+        return tuple(
+            strain for contribution in self.contributions for name, strain in contribution.strains if name == part
+        )
+
+    @property
+    def _longest_path(self) -> float:
+        """Longer part of the path of contact, from pitch point to tip [mm]: r_b |tan alpha_a - tan alpha_w|."""
+        at_pitch = math.tan(self.pair.working_pressure_angle)
+        return max(gear.base_radius * abs(gear.tip_roll - at_pitch) for gear in (self.pair.pinion, self.pair.wheel))
+
+
+POSITIONS_OF_A_PITCH: Final = 64
+"""At which the loss by contact lines is averaged; it is straight between kinks, the mean off by 1e-3 of its range."""
+
+
+class HelicalStack(SpurStack):
+    """The stack-up of two helical gears: what happens in the transverse section, times cos(beta_b), and contact lines.
+
+    Every slice across the axes is a spur pair, so that shifts, thickness and growth act as there. Where axes lean the
+    gap is least at an end of a contact line, which depends on the position; see contact_lines.py. Of second order, and
+    so neglected: lines end where their mates do, which stand the backlash j apart (f j/tan(beta_b) of a lean f).
+
+    Args:
+        at: turns of the driver [rad] at which a loss is averaged that is asked for without any; None: over a pitch.
+    """
+
+    pair: SpurPair
+
+    def __init__(
+        self, model: Model, mesh: Mesh, pair: SpurPair, reading: Reading, at: Sequence[float] | None = None
+    ) -> None:
+        super().__init__(model, mesh, pair, reading)
+        self._lines = ContactLines(pair)
+        step = pair.pinion.angular_pitch / POSITIONS_OF_A_PITCH
+        self._at = [k * step for k in range(POSITIONS_OF_A_PITCH)] if at is None else at
+
+    def lost(self, in_plane: Array, across: Array, driver_angle: Array | None = None) -> Array:
+        """As of spur gears, on the contact lines at the driver's turns [rad] (rows,); averaged where None is given."""
+        return np.asarray(sum(self._of_sides(in_plane, across, driver_angle)))
+
+    def _of_sides(self, in_plane: Array, across: Array, driver_angle: Array | None) -> tuple[Array, Array]:
+        """Losses of right and left flanks [mm], (rows,)."""
+        ends = {
+            side: self._mean_ends[side] if driver_angle is None else self._lines.ends(side, driver_angle)
+            for side in (1, -1)
+        }
+        return lost((in_plane + across) / 2, ends[1]), lost((in_plane - across) / 2, ends[-1])
+
+    @cached_property
+    def _mean_ends(self) -> Mapping[int, tuple[Array, Array]]:
+        """Means of the ends of contact lines over the positions that are averaged, by side."""
+        each = {side: self._lines.ends(side, np.array(self._at)) for side in (1, -1)}
+        return {side: (low.mean(), high.mean()) for side, (low, high) in each.items()}
+
+    def _aside_by_tilts(self, in_plane: Array, across: Array, driver_angle: Array) -> Array:
+        right, left = self._of_sides(in_plane, across, driver_angle)
+        return np.asarray((right - left) / 2)
+
+    @property
+    def turns_by_teeth(self) -> bool:
+        """True if axes lean."""
+        return any(term.leans for term in self.terms)
+
+    def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
+        """As of single flanks: the pair of leaning axes that touches first, (trials, positions) [mm at the arm]."""
+        in_plane, across = self._lost_by_tilts(deviations)
+        return side * lost((in_plane + side * across)[:, None] / 2, self._lines.ends(side, driver_angle))
+
+    @property
+    def _longest_path(self) -> float:
+        """Distance [mm] along the normals that a line in the middle of the face may lie from the pitch point."""
+        return self._lines.furthest * self.pair.base_helix_cosine
