@@ -62,10 +62,16 @@ def test_the_table_of_backlash_has_the_words_of_drawings(tmp_path: Path) -> None
     base = 61.0 * math.cos(alpha)
     working = math.acos(base / a)
     normal, arc, reference = (rows[symbol] for symbol in ("j_bn", "j_wt", "j_t"))
-    for row, factor in ((normal, 1.0), (arc, 1 / math.cos(working)), (reference, 1 / math.cos(alpha))):
-        assert (row.least_um, row.largest_um) == pytest.approx((131.244 * factor, 219.448 * factor), abs=PRINTED * 2)
-    tight = brentq(lambda own: math.tan(own) - own - (math.tan(working) - working - 0.131244 / (2 * base)), 0.1, 0.6)
-    assert rows["j_r"].least_um == pytest.approx(1e3 * (a - base / math.cos(tight)), abs=PRINTED * 4)
+    near, far = (math.acos(base / (a + own)) for own in (-0.015, 0.015))
+    for row, ends in (
+        (normal, (1.0, 1.0)),
+        (arc, (1 / math.cos(near), 1 / math.cos(far))),
+        (reference, (1 / math.cos(alpha), 1 / math.cos(alpha))),
+    ):
+        found = (row.least_um, row.largest_um)
+        assert found == pytest.approx((131.244 * ends[0], 219.448 * ends[1]), abs=PRINTED * 2)
+    tight = brentq(lambda own: math.tan(own) - own - (math.tan(near) - near - 0.131244 / (2 * base)), 0.1, 0.6)
+    assert rows["j_r"].least_um == pytest.approx(1e3 * (a - 0.015 - base / math.cos(tight)), abs=PRINTED * 4)
     nominal = 25.927  # um, without thinning
     mean = nominal + (69 + 90) * math.cos(alpha)
     slope = 2 * math.sin(working)
@@ -74,6 +80,22 @@ def test_the_table_of_backlash_has_the_words_of_drawings(tmp_path: Path) -> None
     assert (normal.least_3sigma_um, normal.largest_3sigma_um) == pytest.approx(
         (max(ends[0], 131.244), min(ends[1], 219.448)), abs=0.03
     )
+
+
+def test_the_table_of_a_helical_pair(tmp_path: Path) -> None:
+    """A published stage, 23/67, m_n 1, beta 30 deg, c25 and js7: its calculator prints these limits."""
+    helix = "helix_angle: 30 deg, hand: "
+    text = edited(
+        PAIR,
+        ("{kind: spur_gear, teeth: 20, module: 2 mm, face_width: 20 mm, profile_shift: 0.3",
+         f"{{kind: helical_gear, {helix}right, teeth: 23, module: 1 mm, face_width: 16 mm, profile_shift: 0.55"),
+        ("{kind: spur_gear, teeth: 41, module: 2 mm, face_width: 20 mm, profile_shift: 0.1",
+         f"{{kind: helical_gear, {helix}left, teeth: 67, module: 1 mm, face_width: 11 mm, profile_shift: 0.5441135839"),
+        ("din_3967: cd25", "din_3967: c25"), ("25 cd", "c25"), ("61.8 mm", "53 mm"),
+    )  # fmt: skip
+    rows = {own.symbol: own for own in backlash_stages(check_scene(written(text, tmp_path)).model, GearSystem, "exact")}
+    assert (rows["j_bn"].least_um, rows["j_bn"].largest_um) == pytest.approx((129.629, 218.071), abs=PRINTED * 2)
+    assert (rows["j_wt"].least_um, rows["j_wt"].largest_um) == pytest.approx((162.427, 273.400), abs=PRINTED * 2)
 
 
 def test_stages_add_what_is_stated_of_the_pair() -> None:

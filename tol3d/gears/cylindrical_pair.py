@@ -154,12 +154,13 @@ class CylindricalPair(RollingPair):
         """Free turn of the pinion (wheel held) and of the wheel (pinion held) [rad]: j_bn / (r_b cos beta_b)."""
         return self.normal_backlash / self.pinion.section_arm, self.normal_backlash / self.wheel.section_arm
 
-    def from_normal(self, normal: float) -> "Backlashes":
-        """A normal backlash [mm] of other teeth at this centre distance, in all the words of drawings."""
-        working, transverse = self.working_pressure_angle, normal / self.base_helix_cosine
+    def from_normal(self, normal: float, further: float = 0.0) -> "Backlashes":
+        """A normal backlash [mm] of other teeth in all the words of drawings, the axes so much further apart [mm]."""
+        distance, transverse = self.centre_distance + further, normal / self.base_helix_cosine
+        working = math.acos(self.iso_sign * self.base_radii / distance)
         tight, radial = involute(working) - transverse / (2 * self.base_radii), math.nan
         if tight >= 0.0:
-            radial = self.iso_sign * self.centre_distance - self.base_radii / math.cos(inverse_involute(tight))
+            radial = self.iso_sign * distance - self.base_radii / math.cos(inverse_involute(tight))
         reference = transverse / math.cos(self.pinion.transverse_pressure_angle)
         return Backlashes(normal, transverse / math.cos(working), reference, radial)
 

@@ -14,14 +14,17 @@ import numpy as np
 from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.methods.regressors import acting
 from tol3d.gearing.model import Backlash, Contributor, Measure, Model
+from tol3d.gearing.model.model import gear_contributor
 from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.summary.types import BACKLASH_SYMBOLS, BacklashLimits
 from tol3d.gears.cylindrical_pair import Backlashes, CylindricalPair
+from tol3d.study.effects.worst_case import WorstBuild
 from tol3d.study.effects.worst_cases import worst_cases
 from tol3d.study.runs.summary.values import made
 from tol3d.study.system.method import ANALYTIC_METHOD
 from tol3d.study.system.outcome import ANALYTIC, GEOMETRIC
 from tol3d.study.system.positions import AT_RANDOM
+from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import System
 from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.simulation import Simulation
@@ -30,7 +33,8 @@ from tol3d.study.trials.study import Study
 Stage = Literal["theoretical", "acceptance", "operating"]
 STAGES: Final[tuple[Stage, ...]] = get_args(Stage)
 
-THEORETICAL: Final = frozenset({"tooth_thickness", "centre_distance"})
+CENTRE_DISTANCE: Final = "centre_distance"
+THEORETICAL: Final = frozenset({"tooth_thickness", CENTRE_DISTANCE})
 OPERATING: Final = frozenset({"temperature"})
 DRAWS: Final = 16_384
 """Of stages whose moments have no closed form: 3 sigma to 0.6 %."""
@@ -89,14 +93,25 @@ def _limits(
     simulation = Simulation(system_of(model), Study(engine=engine))
     method = None if engine == ANALYTIC_METHOD else simulation.system.method(engine, None)
     worst = worst_cases(simulation, method, [measure])[measure.name].get(ANALYTIC if method is None else GEOMETRIC)
-    found = (worst.low, worst.high) if worst is not None else (None, None)
-    ends = [None if own is None else own.value / measure.per_internal for own in found]
+    ends = (worst.low, worst.high) if worst is not None else (None, None)
+    least, largest = (None if own is None else own.value / measure.per_internal for own in ends)
     form = closed_form(model, measure)
     if form is not None:
         mean, sigma = form.mean, form.sigma
     else:
         values = analytic_values(model, measure, drawn(simulation, 0, DRAWS))
         mean, sigma = float(np.mean(values)), float(np.std(values))
-    low, high = (-math.inf if ends[0] is None else ends[0]), (math.inf if ends[1] is None else ends[1])
-    sizes = [*ends, max(mean - 3 * sigma, low), min(mean + 3 * sigma, high)]
-    return [None if own is None else pair.from_normal(own) for own in sizes]
+    low = mean - 3 * sigma if least is None else max(mean - 3 * sigma, least)
+    high = mean + 3 * sigma if largest is None else min(mean + 3 * sigma, largest)
+    arithmetical = [
+        None if own is None or size is None else pair.from_normal(size, _further(simulation.system, own))
+        for own, size in zip(ends, (least, largest), strict=True)
+    ]
+    return [*arithmetical, pair.from_normal(low), pair.from_normal(high)]
+
+
+def _further(system: System, build: WorstBuild) -> float:
+    """Sum of the deviations of the centre distance in a build [mm]."""
+    slices = component_slices(system)
+    own = (slices[each.name] for each in system.contributors if gear_contributor(each).kind == CENTRE_DISTANCE)
+    return float(sum(build.deviations[columns].sum() for columns in own))
