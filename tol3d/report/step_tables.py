@@ -25,7 +25,8 @@ from tol3d.report.declared import declared_table
 from tol3d.report.page import BLANK, Line, Page, PageItem, Table, line, note, page, titled
 from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
 
-UNDIRECTED: Final = ("ball", "socket", "free form")
+UNDIRECTED: Final = ("ball", "socket", "free form", "unread")
+ROUNDING: Final = 1e-6  # mm; splines that deviate by less are the surface that they are taken for
 TURNED: Final = ("hole", "pin", "fillet", "round", "cone")
 LISTED: Final = 4  # faces of a feature, or layers of a file, that are listed
 WORDS: Final = (
@@ -41,9 +42,11 @@ class FeatureRow:
 
     part: StepPart
     feature: FoundFeature
-    kind = Computed(Shows("kind", "words"), lambda row: row.feature.kind + " (beside the solid)" * row.feature.loose)
+    kind = Computed(Shows("kind", "words"), lambda row: kind_text(row.feature))
     size = Computed(Shows("size [mm]", "words"), lambda row: size_text(row.feature))
-    place = Computed(Shows("place [mm]"), lambda row: _numbers(row.feature.at, 4))
+    place = Computed(
+        Shows("place [mm]"), lambda row: "–" if row.feature.kind == "unread" else _numbers(row.feature.at, 4)
+    )
     direction = Computed(
         Shows("direction"), lambda row: "–" if row.feature.kind in UNDIRECTED else _numbers(row.feature.direction, 4)
     )
@@ -112,7 +115,7 @@ def features_report(file: StepFile) -> Page:
     blocks: list[PageItem] = []
     for part in file.parts:
         blocks += [BLANK] if blocks else []
-        blocks += [Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))), _table(part)]
+        blocks += [Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))), _table(part), *_unread(part)]
     if len(file.uses) > 1:
         blocks += [BLANK, *titled("parts as they stand in the file", _uses(file))]
     if file.layers:
@@ -122,6 +125,18 @@ def features_report(file: StepFile) -> Page:
             note(f"{len(file.layers)} layers are ignored: {named}{', …' if len(file.layers) > LISTED else ''}"),
         ]
     return page(*blocks, BLANK, note(WORDS))
+
+
+def _unread(part: StepPart) -> list[PageItem]:
+    """Faces of a part that cannot be read, or not triangulated, and what that means."""
+    noted = [note(f"#{face} cannot be read: {shown(why)}") for face, why in list(part.unread.items())[:LISTED]]
+    if len(part.unread) > LISTED:
+        noted.append(note(f"and {len(part.unread) - LISTED} more faces cannot be read"))
+    bare = sorted(part.bare - {*part.unread})
+    if bare:
+        listed = ", ".join(f"#{face}" for face in bare[:LISTED]) + (", …" if len(bare) > LISTED else "")
+        noted.append(note(f"Open CASCADE cannot triangulate {listed}: no picture has it, by its surface it is exact"))
+    return [*noted, note("a clearance of this part is refused")] if noted else []
 
 
 def _uses(file: StepFile) -> Table:
@@ -162,6 +177,12 @@ def _drawn(part: StepPart, feature: FoundFeature) -> list[str]:
         for each in part.named
         if faces & {*each.faces}
     ]
+
+
+def kind_text(feature: FoundFeature) -> str:
+    """The kind of a feature in words, with the deviation of splines that are taken for it."""
+    deviation = f" (spline within {1000 * feature.deviation:.2g} µm)" if feature.deviation > ROUNDING else ""
+    return feature.kind + deviation + " (beside the solid)" * feature.loose
 
 
 def size_text(feature: FoundFeature) -> str:
