@@ -224,6 +224,32 @@ def test_a_drafted_assembly_has_the_columns_of_its_parts_placed_by_hand_bit_by_b
         assert np.array_equal(values, typed[name]), name
 
 
+def names_of(written: str, folder: Path) -> list[str]:
+    """Names of the parts of a scene drafted from the text of a file."""
+    path = folder / "kit.step"
+    path.write_text(written, encoding="utf-8")
+    return [part.name for part in drafted_parts(read_files([read_file(path)]), Names())]
+
+
+def test_parts_have_the_names_of_their_products_numbered_where_those_of_their_uses_say_nothing(
+    four: tuple[str, Path], tmp_path: Path
+) -> None:
+    """One plate and four blocks of one product, by names of uses and of products."""
+    text = (four[1] / "all.step").read_text("utf-8")
+    uses = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*',)'[^']*'")
+    assert names_of(text, tmp_path) == ["plate", "block 0", "block 1", "block 2", "block 3"]
+    for word in ("Next assembly relationship", "=>[0:1:1:2]", "", "NAUO7", "3"):
+        assert names_of(uses.sub(rf"\1'{word}'", text), tmp_path) == ["plate", *(f"block 0 {k}" for k in (1, 2, 3, 4))]
+    generic = uses.sub(r"\1'x'", text)  # one name of uses of two products
+    for product in ("UNIDENTIFIED_PRODUCT", "Open CASCADE STEP translator 7.9 1.2", "(Unsaved)"):
+        nameless = re.sub(r"PRODUCT\('[^']*','[^']*'", f"PRODUCT('{product}','NONE'", generic)
+        assert names_of(nameless, tmp_path) == ["kit 1", *(f"kit 2 {k}" for k in (1, 2, 3, 4))]
+    numbered = re.sub(r"PRODUCT\('[^']*','plate'", "PRODUCT('4711-0815','NONE'", generic)
+    assert names_of(numbered, tmp_path)[0] == "4711-0815"
+    long = re.sub(r"'plate'", "'Housing, machined, rear axle of the.2nd stage'", generic)
+    assert names_of(long, tmp_path)[0] == "Housing machined rear"
+
+
 @pytest.fixture
 def two(tmp_path: Path) -> tuple[Path, Path]:
     """Files of two parts, in folders of their own."""

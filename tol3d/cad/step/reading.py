@@ -33,6 +33,7 @@ from tol3d.cad.step.found_features import FoundFeature, Shell, Triple, cosines_o
 from tol3d.cad.step.outline import Named, named_in, read_step_text
 from tol3d.cad.step.part21 import Part21, read_part21
 from tol3d.cad.step.refused import StepError, shown
+from tol3d.cad.step.structure import UNNAMED
 from tol3d.errors import InputError
 from tol3d.files import FileContent, UnreadableFileError, read_contained
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
@@ -139,8 +140,12 @@ class StepPart:
 
     @property
     def name(self) -> str:
-        """Name of the product in the file."""
-        return self.body.name
+        """Name of the product in the file, or that of the file, numbered, where that says none."""
+        if self.body.name != UNNAMED:
+            return self.body.name
+        unnamed = [part.body.product for part in self.file.read.parts if part.body.name == UNNAMED]
+        stem = self.file.content.path.stem
+        return stem if len(unnamed) == 1 else f"{stem} {unnamed.index(self.body.product) + 1}"
 
     @cached_property
     def shell(self) -> Shell:
