@@ -88,7 +88,8 @@ def _draft(
         if path.exists() and path.read_bytes() != content:
             raise InputError(f"{path}: another file of that name lies beside the scene; --out names another folder")
     laid = [Seat(*own) for own in zip(seats, faces, strict=True)]
-    text, drafted = scene_from(contents, laid, inspect=inspect)
+    with err_console.status(f"reading {', '.join(names)}") as status:
+        text, drafted = scene_from(contents, laid, inspect=inspect, tell=status.update)
     for path, content in copies:
         if path.exists():
             continue

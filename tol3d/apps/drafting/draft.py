@@ -356,7 +356,11 @@ SCENE = "scene.yaml"
 
 
 def scene_from(
-    contents: Sequence[FileContent], seats: Sequence[Seat] = (), *, inspect: bool = False
+    contents: Sequence[FileContent],
+    seats: Sequence[Seat] = (),
+    *,
+    inspect: bool = False,
+    tell: Callable[[str], None] = lambda words: None,
 ) -> tuple[str, Draft]:
     """A scene from STEP files that `tol3d check` accepts and `tol3d run` runs, and its draft.
 
@@ -364,11 +368,13 @@ def scene_from(
         contents: of the files.
         seats: faces on which parts are laid.
         inspect: whether each tolerance is measured against its own limit too.
+        tell: progress callback, with words.
 
     Raises:
         InputError: a file cannot be read, or a seat is of no part or face.
     """
     drafted = draft(contents, seats, inspect=inspect)
+    tell(f"checking {len(drafted.parts)} parts with {len(drafted.entries)} entries")
     with tempfile.TemporaryDirectory(prefix="tol3d-new-") as made:
         folder = Path(made)
         for content in contents:
@@ -381,6 +387,7 @@ def scene_from(
         text = settled(drafted, check)
         if drafted.candidates:
             others = [own for own in drafted.entries if own.section == "measures" and own.stands and not own.needs]
+            tell(f"ranking {len(drafted.candidates)} measures")
             most = MOST_MEASURES - (len(others) - sum(own.entry.stands for own in drafted.candidates))
             chosen = ranked(drafted.candidates, deviations(folder / SCENE), max(most, 0))
             drafted = draft(contents, seats, inspect=inspect, chosen=chosen)
