@@ -8,6 +8,7 @@ import pytest
 from fixtures import Command
 from foreign_parts import nist_file, slotted_block, socket, solid, step_file
 from printing import printed
+from rich.status import Status
 
 from tol3d.cad.step.reading import StepFile, read_step
 from tol3d.cli import console
@@ -64,7 +65,12 @@ def test_the_command_prints_a_page_or_all_and_says_what_it_does(
 ) -> None:
     told: list[str] = []
     status = console.err_console.status
-    monkeypatch.setattr(console.err_console, "status", lambda words: (told.append(words), status(words))[1])
+
+    def noted(words: str) -> Status:
+        told.append(words)
+        return status(words)
+
+    monkeypatch.setattr(console.err_console, "status", noted)
     path = tmp_path / "block.step"
     step_file({"block": slotted_block()}, path)
     _, page, _ = tol3d("features", str(path))
