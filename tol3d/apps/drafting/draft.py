@@ -28,6 +28,7 @@ from tol3d.study import drawn
 
 LAW: Final = "{kind: normal}"
 GUESS: Final = 0.1  # mm; zones where no file states any
+PER_PLAY: Final = 4.0  # guessed zones of a pair of pins in their holes: together they take half the play
 MOST_TRIES: Final = 200
 TRIALS: Final = 10_000
 LONGEST: Final = 240  # characters of a reason
@@ -244,7 +245,8 @@ def guessed(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
     for part in parts:
         for group in () if part.like else part.features.groups:
             flat = group.kind == "plane"
-            zone = f"{{width: {length(GUESS)}}}" if flat else f"{{diameter: {length(GUESS)}}}"
+            width = float(f"{min(GUESS, part.features.play.get(group.name, GUESS) / PER_PLAY):.2g}")
+            zone = f"{{{'width' if flat or group.kind == 'slot' else 'diameter'}: {length(width)}}}"
             kind = "profile" if flat else "position"
             words = f"{{kind: {kind}, of: {part.of(group.name)}, zone: {zone}, law: {LAW_HERE}}}"
             name = names.new(f"{part.name} {group.name}", kind, len(group.members))

@@ -9,6 +9,7 @@ import numpy as np
 
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.parts import DraftedPart
+from tol3d.apps.drafting.slots import PinInSlot, pins_in_slots
 from tol3d.apps.drafting.words import Names, number, scalar
 from tol3d.assembly import Cone, cone_seat, unfit_cones
 from tol3d.cad.step import FoundFeature
@@ -17,7 +18,6 @@ from tol3d.numerics.arrays import Array
 TOUCHING: Final = 1e-3  # mm; what models are drawn to
 PARALLEL: Final = 1e-6  # sine, cosine
 LARGEST_BOLT: Final = 3.0  # diameters of the smallest hole beside it
-LEAST_PLAY: Final = 0.3  # mm; three guessed zones
 THINNEST_BOLT: Final = 0.5  # of the hole; a thinner guess is none
 ALONE: Final = "it touches no other part as it stands"
 BOLT_LESS: Final = 0.1  # of the hole, where no position says how much
@@ -196,6 +196,10 @@ class Contacts:
             self._known[key] = find(part, other)
         return self._known[key]
 
+    def slotted(self, part: DraftedPart, other: DraftedPart) -> list[PinInSlot]:
+        """See `pins_in_slots`."""
+        return self._once("slotted", pins_in_slots, part, other)
+
     def touch(self, part: DraftedPart, other: DraftedPart) -> bool:
         """True if faces of two parts touch in their poses."""
         meets = any(own.gap < TOUCHING for own in self.facing(part, other))
@@ -284,6 +288,7 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], contacts: Contacts, n
             lines.append(axis)
     square = [axis for axis in lines if not normals or abs(float(axis.axis @ normals[0])) > 1.0 - PARALLEL]
     square = [axis for axis in square if is_bolted(axis, square)] or square
+    in_slots = [own for other in others for own in contacts.slotted(part, other)] if relations and square else []
     name = scalar(names.new(f"{part.name} placed", "placed"))
     if not relations and not square:
         yield Entry("moves", name, [Wording(fixed(part).lines, f"guess: {ALONE}")])
@@ -297,7 +302,12 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], contacts: Contacts, n
     if square and relations and (pairs := [playing(own, contacts) for own in square]) and all(pairs):
         made = [own for own in pairs if own is not None]
         for pair in square:
-            yield from unsized(pair, names)
+            yield from unsized(((pair.part, pair.own), (pair.other, pair.there)), names)
+        for slotted in in_slots if all(own.play > TOUCHING for own in in_slots) else ():
+            made.append(slotted.pair(part))
+            slotted.slotted.features.plays(slotted.slot.walls, slotted.play)
+            slotted.pinned.features.plays([slotted.pin], slotted.play)
+            yield from unsized(((slotted.pinned, slotted.pin), (slotted.slotted, slotted.slot.walls[0])), names)
         words = ("kind: pattern", f"part: {scalar(part.name)}", "float: {kind: random}",
                  "relations:", *relations[:1], "pairs:", *made)  # fmt: skip
         ways.append(Wording(words, "guess: faces that touch, with pins and bolts in their play"))
@@ -318,15 +328,11 @@ def feature(part: DraftedPart, found_feature: FoundFeature) -> str:
 
 
 def playing(own: Coaxial, contacts: Contacts) -> str | None:
-    """A pair of a pattern: a pin in a larger hole, or two holes with a bolt; None where there is no play.
-
-    Guessed zones take up play of their own size: it is none beside them.
-    """
+    """A pair of a pattern: a pin in a larger hole, or two holes with a bolt; None where there is no play."""
     words = f"from: {feature(own.part, own.own)}, to: {feature(own.other, own.there)}"
-    guessed = not own.part.drawing.text.tolerances and not own.other.drawing.text.tolerances
-    least = LEAST_PLAY if guessed else TOUCHING
     if not own.holes:
-        return f"  - {{{words}}}" if 2 * abs(own.own.radius - own.there.radius) > least else None
+        noted(own, 2 * abs(own.own.radius - own.there.radius))
+        return f"  - {{{words}}}" if 2 * abs(own.own.radius - own.there.radius) > TOUCHING else None
     hole = 2 * min(own.own.radius, own.there.radius)
     known = contacts.bolts(own)
     if known:
@@ -334,10 +340,17 @@ def playing(own: Coaxial, contacts: Contacts) -> str | None:
     else:
         bolt = min(largest_bolt(part, each) for part, each in ((own.part, own.own), (own.other, own.there)))
         why = "guess: each hole at its smallest less its position"
-    if bolt < THINNEST_BOLT * hole or hole - bolt <= least:
+    if bolt < THINNEST_BOLT * hole or hole - bolt <= TOUCHING:
         return None
+    noted(own, hole - bolt)
     size = f"{number(round(bolt, 3))} mm"
     return f"  - {{{words}, bolt: {{diameter: {size}, distribution: {{kind: constant, value: 0 mm}}}}}}  # {why}"
+
+
+def noted(own: Coaxial, play: float) -> None:
+    """Note the play of a pair with both its features."""
+    for part, member in ((own.part, own.own), (own.other, own.there)):
+        part.features.plays([member], play)
 
 
 def largest_bolt(part: DraftedPart, hole: FoundFeature) -> float:
@@ -358,13 +371,14 @@ def largest_bolt(part: DraftedPart, hole: FoundFeature) -> float:
     return least - max(zones) if zones else least * (1.0 - BOLT_LESS)
 
 
-def unsized(own: Coaxial, names: Names) -> Iterator[Entry]:
-    """Sizes of holes and pins of which the file states none, without deviations: play is by sizes."""
-    for part, each in ((own.part, own.own), (own.other, own.there)):
+def unsized(ends: Sequence[tuple[DraftedPart, FoundFeature]], names: Names) -> Iterator[Entry]:
+    """Sizes of holes, pins and slots of which the file states none, without deviations: play is by sizes."""
+    for part, each in ends:
         known = part.features.named(each)
-        if known is None or known[0].name in part.drawing.sizes:
+        slot = next((own for own in part.features.groups if own.slot and own.slot[0].faces == each.faces), None)
+        group = slot if known is None or each.kind == "plane" else known[0]
+        if group is None or group.name in part.drawing.sizes:
             continue
-        group = known[0]
         line = f"{{kind: size, of: {part.first_of(group.name)}, distribution: {{kind: constant, value: 0 mm}}}}"
         name = scalar(names.new(f"{group.name} size", "size", len(group.members)))
         entry = Entry("tolerances", name, [Wording((line,), "guess: the file states no limits")])
