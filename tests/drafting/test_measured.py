@@ -5,18 +5,15 @@ from pathlib import Path
 from typing import Any
 
 import cadquery as cq
-import numpy as np
 import pytest
 import yaml
+from deviations import deviating
 from foreign_parts import nist_file, solid
-from scene_texts import scene_of
 
 from tol3d.apps.drafting import scene_from
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.measured import MOST_MEASURES, Candidate, ranked
 from tol3d.files import FileContent, read_file
-from tol3d.simulate import Overrides, simulation_of
-from tol3d.study.trials.draws import drawn
 
 PLACES = ((-30, -14), (-30, 16), (34, -15), (31, 19))
 
@@ -41,15 +38,6 @@ def bolted(folder: Path, bolt_diameter: float) -> FileContent:
     path = folder / "bolted.step"
     made.export(str(path), exportType="STEP")
     return read_file(path)
-
-
-def deviating(text: str, folder: Path) -> dict[str, float]:
-    """Standard deviation of each measure, exactly [mm]."""
-    simulation = simulation_of(scene_of(text, folder), Overrides())
-    method = simulation.system.method("exact", simulation.system.materials("exact"))
-    answers = method.answers(drawn(simulation, 0, 64), simulation.system.measures)
-    assert all((codes == 0).all() for codes in answers.status.values())
-    return {name: float(np.std(values)) for name, values in answers.values.items()}
 
 
 def placed_by(scene: dict[str, Any]) -> dict[str, dict[str, Any]]:

@@ -5,8 +5,8 @@ from pathlib import Path
 import cadquery as cq
 import pytest
 import yaml
+from deviations import deviating
 from foreign_parts import solid, step_file, turned
-from test_measured import deviating
 
 from tol3d.apps.drafting import scene_from
 from tol3d.apps.drafting.slots import slots
