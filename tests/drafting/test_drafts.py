@@ -14,7 +14,7 @@ from fixtures import Command
 from foreign_parts import nist_file, slotted_block, solid, step_file
 from scene_texts import scene_of
 
-from tol3d.apps.drafting import scene_from
+from tol3d.apps.drafting import Draft, scene_from
 from tol3d.apps.drafting.drawn_part import distance_entry, enveloped
 from tol3d.apps.drafting.entry import Entry, Scene, Wording
 from tol3d.apps.drafting.fixture import seat_and_pins, three_two_one
@@ -23,7 +23,8 @@ from tol3d.apps.drafting.touching_faces import TOUCHING, largest_bolt, overlap
 from tol3d.apps.drafting.words import Names, comment, scalar
 from tol3d.assembly.model import Cone
 from tol3d.assembly.system import AssemblySystem
-from tol3d.cad.step import read_step_text
+from tol3d.cad.step import Meanings, read_step_text
+from tol3d.cad.step.datum import DatumTarget
 from tol3d.cad.step.found_features import FoundFeature
 from tol3d.cad.step.reading import read_step
 from tol3d.files import FileContent, read_file
@@ -224,6 +225,32 @@ def test_a_drafted_assembly_has_the_columns_of_its_parts_placed_by_hand_bit_by_b
         assert np.array_equal(values, typed[name]), name
 
 
+def names_of(written: str, folder: Path) -> list[str]:
+    """Names of the parts of a scene drafted from the text of a file."""
+    path = folder / "kit.step"
+    path.write_text(written, encoding="utf-8")
+    return [part.name for part in drafted_parts(read_files([read_file(path)]), Names())]
+
+
+def test_parts_have_the_names_of_their_products_numbered_where_those_of_their_uses_say_nothing(
+    four: tuple[str, Path], tmp_path: Path
+) -> None:
+    """One plate and four blocks of one product, by names of uses and of products."""
+    text = (four[1] / "all.step").read_text("utf-8")
+    uses = re.compile(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*',)'[^']*'")
+    assert names_of(text, tmp_path) == ["plate", "block 0", "block 1", "block 2", "block 3"]
+    for word in ("Next assembly relationship", "=>[0:1:1:2]", "", "NAUO7", "3"):
+        assert names_of(uses.sub(rf"\1'{word}'", text), tmp_path) == ["plate", *(f"block 0 {k}" for k in (1, 2, 3, 4))]
+    generic = uses.sub(r"\1'x'", text)  # one name of uses of two products
+    for product in ("UNIDENTIFIED_PRODUCT", "Open CASCADE STEP translator 7.9 1.2", "(Unsaved)"):
+        nameless = re.sub(r"PRODUCT\('[^']*','[^']*'", f"PRODUCT('{product}','NONE'", generic)
+        assert names_of(nameless, tmp_path) == ["kit 1", *(f"kit 2 {k}" for k in (1, 2, 3, 4))]
+    numbered = re.sub(r"PRODUCT\('[^']*','plate'", "PRODUCT('4711-0815','NONE'", generic)
+    assert names_of(numbered, tmp_path)[0] == "4711-0815"
+    long = re.sub(r"'plate'", "'Housing, machined, rear axle of the.2nd stage'", generic)
+    assert names_of(long, tmp_path)[0] == "Housing machined rear"
+
+
 @pytest.fixture
 def two(tmp_path: Path) -> tuple[Path, Path]:
     """Files of two parts, in folders of their own."""
@@ -269,6 +296,7 @@ def find_plane(path: Path, at: tuple[float, float, float]) -> int:
         (("spur_pair", "--from", "a.step"), "got both"),
         (("--from", "a.step", "--seat", "a.A"), "--seat: expected an --on for each, got 1 and 0"),
         (("--seat", "a.A", "--on", "b.B"), "--seat: expected --from"),
+        (("--inspect",), "--inspect: expected --from"),
         (("spur_pair", "train"), "expected one kind of system, got 2"),
         (("--from", "none.step"), "none.step"),
     ],
@@ -296,6 +324,25 @@ def test_a_tolerance_that_cannot_be_read_is_listed_and_counts() -> None:
     text, _ = scene_from([FileContent(content.path, content.content[:place] + broken + content.content[end:])])
     assert re.search(r"^# Of the 6 tolerances in \S+ 5 are said, 0 approximately, 1 left out\.$", text, re.MULTILINE)
     assert re.search(r"^#   #22: ", text, re.MULTILINE)
+
+
+def test_datum_targets_without_a_place_are_asked_for_by_name() -> None:
+    """Datum B of CTC-01 by three targets, of which the file says nothing but that they are points."""
+    content = nist_file("ctc_01")
+    text = read_step_text(content.content, "a")
+    target = DatumTarget(1, "1", "point", text.datums[1].features[0], None, ())
+    targets = tuple(replace(target, number=number) for number in ("1", "2", "3"))
+    datums = [replace(own, features=(), targets=targets) if own.letter == "B" else own for own in text.datums]
+    (file,) = read_files([content])
+    changed = replace(text, datums=tuple(datums))
+    own = replace(file, text=changed, meanings=Meanings(changed, file.meanings.surfaces))
+    lines = list(Draft([own], [], []).targets_told(own))
+    assert lines[-1] == (
+        "#   - {feature: B, simulator: targets, targets: [[? mm, ? mm, ? mm], [? mm, ? mm, ? mm], [? mm, ? mm, ? mm]]}"
+        "  # B1 point, B2 point, B3 point"
+    )
+    assert len(lines) == 3
+    assert not list(Draft([file], [], []).targets_told(file))
 
 
 @pytest.mark.slow

@@ -92,7 +92,7 @@ def drafted(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     (folder / content.path.name).write_bytes(content.content)
     with warnings.catch_warnings():
         warnings.simplefilter("error", RuntimeWarning)
-        text, draft = scene_from([content])
+        text, draft = scene_from([content], inspect=True)
         values, limits = measured(text, folder, TRIALS)
     return Drafted(request.param, text, draft, values, limits)
 
@@ -157,7 +157,7 @@ def test_a_tolerance_that_is_said_reaches_its_zone_and_never_leaves_it(model: st
     """
     content = nist_file(model)
     (tmp_path / content.path.name).write_bytes(content.content)
-    text, draft = scene_from([content])
+    text, draft = scene_from([content], inspect=True)
     text = text.replace("&zones {kind: normal}", "&zones {kind: uniform}")
     text = text.replace("distribution: {kind: normal,", "distribution: {kind: uniform,")
     simulation = simulation_of(scene_of(text, tmp_path), Overrides())
@@ -191,7 +191,7 @@ def test_datums_at_their_boundaries_are_gauges_of_both_kinds(word: bytes, key: s
     modified = rb"\1,(SIMPLE_DATUM_REFERENCE_MODIFIER(.%s_MATERIAL_REQUIREMENT.)))" % word
     data = re.sub(rb"(DATUM_REFERENCE_COMPARTMENT\([^;]*#3[89]),\$\)", modified, content.content)
     (tmp_path / content.path.name).write_bytes(data)
-    text, _ = scene_from([FileContent(content.path, data)])
+    text, _ = scene_from([FileContent(content.path, data)], inspect=True)
     text = text.replace("distribution: {kind: normal,", "distribution: {kind: uniform,")  # within the limits
     on_gauges = f"datums: [A, {{feature: B, {key}: random}}, {{feature: C, {key}: random}}]"
     assert text.count(on_gauges) == 4
@@ -214,8 +214,8 @@ def test_parts_of_one_file_have_datums_of_their_own_letters() -> None:
     data = shifted[shifted.index(b"DATA;") + 5 : shifted.rindex(b"ENDSEC;")]
     end = first.content.rindex(b"ENDSEC;")
     merged = first.content[:end] + data + first.content[end:]
-    text, draft = scene_from([FileContent(first.path, merged)])
-    apart = [scene_from([own])[1] for own in (first, second)]
+    text, draft = scene_from([FileContent(first.path, merged)], inspect=True)
+    apart = [scene_from([own], inspect=True)[1] for own in (first, second)]
     assert len(draft.parts) == 2
 
     def kept(of: Draft) -> list[int]:
@@ -231,7 +231,7 @@ def test_distances_and_sizes_are_within_the_limits_of_the_file_and_reach_them(mo
     """Oracle: least and most as the file states them, whatever the scene makes of its nominal shape, and of signs."""
     content = nist_file(model)
     (tmp_path / content.path.name).write_bytes(content.content)
-    text, draft = scene_from([content])
+    text, draft = scene_from([content], inspect=True)
     text = text.replace("&zones {kind: normal}", "&zones {kind: uniform}")
     text = text.replace("distribution: {kind: normal,", "distribution: {kind: uniform,")
     limits = {own.id: own.limits for own in draft.files[0].text.dimensions if own.limits}

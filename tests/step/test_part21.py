@@ -128,6 +128,29 @@ def test_text_may_be_utf8_with_a_mark_or_latin1() -> None:
     assert read_part21(step("#1=A('x');").replace(b"'x'", "'ä'".encode()))[1].needed("A").text(0) == "ä"
 
 
+@pytest.mark.parametrize(
+    ("written", "expected"),
+    [
+        ("0." + "0" * 60 + "25", 0.25e-60),
+        ("-" + "1" * 60 + ".E-50", -1.111111111111111e9),
+        ("0" * 6000 + "7", 7.0),
+        ("2." + "5" * 100_000, 23 / 9),
+    ],
+)
+def test_numbers_have_any_length(written: str, expected: float) -> None:
+    """ISO 10303-21, 6.4.2: no limit is stated."""
+    assert read(f"#1=A_REPRESENTATION_ITEM({written});")[1].needed("A_REPRESENTATION_ITEM").number(0) == pytest.approx(
+        expected, rel=1e-15
+    )
+
+
+def test_an_error_names_its_instance_once() -> None:
+    """A reference prints as its number."""
+    file = read("#1=A(#2);\n#2=B(x(1));")
+    with pytest.raises(StepError, match=r"^x\.stp:9: #2: "):
+        file[file[1].needed("A").reference(0)].needed("C")
+
+
 PARSED = ("#1=A(1,", "#1=A(1 ", "#1=A(x)", "#1=(1")
 """Damage that is found where an instance is parsed."""
 
@@ -143,6 +166,7 @@ PARSED = ("#1=A(1,", "#1=A(1 ", "#1=A(x)", "#1=(1")
         ("#1=A(-1.E400);", "expected a number up to 1e+12"),
         ("#1=A(99999999999999);", "expected a number up to 1e+12"),
         ("#1=A(" + "1" * 5000 + ");", "expected a number up to 1e+12"),
+        ("#1=A(" + "1" * 60 + ".E-40);", "expected a number up to 1e+12"),
         ("#1=A(" + "(" * 64 + ")" * 64 + ");", "expected at most 64 brackets in each other"),
         ("#1=A(" + "(" * 200_000 + ")" * 200_000 + ");", "expected at most 64 brackets in each other"),
         ("#1=A(" + "(" * 200_000 + ");", "expected brackets that close"),

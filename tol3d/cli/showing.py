@@ -66,11 +66,14 @@ def check(
             raise InputError(f"{'--parts' if parts else '--out'}: of --json leave it out, which prints no tables")
         _print_problems(scene, trust_parts=trust_parts, run_builders=run_builders)
         return
-    loaded = load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
-    spent = {"to read the scene": seconds()}
-    simulation = simulation_of(loaded)
-    spent["to build its system"] = seconds() - sum(spent.values())
-    report = parts_report(simulation) if parts else check_report(simulation, drawn_limits(loaded))
+    with err_console.status("reading the scene") as status:
+        loaded = load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
+        spent = {"to read the scene": seconds()}
+        status.update("building its system")
+        simulation = simulation_of(loaded)
+        spent["to build its system"] = seconds() - sum(spent.values())
+        status.update(f"coefficients and worst cases of {len(simulation.system.measures)} measures")
+        report = parts_report(simulation) if parts else check_report(simulation, drawn_limits(loaded))
     spent["for what it shows"] = seconds() - sum(spent.values())
     out_console.print(report)
     if out is not None:

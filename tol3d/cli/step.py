@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from tol3d.cli.console import out_console, tell
+from tol3d.cli.console import err_console, out_console, tell
 
 
 def features(
@@ -19,16 +19,20 @@ def features(
     csv: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write all numbers whole, as comma-separated values.")
     ] = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="List each feature, with the line that selects it in a scene.")
+    ] = False,
 ) -> None:
-    """List the features of the parts in a STEP file, each with a line that selects it in a scene."""
+    """List the features of the parts in a STEP file on a page; --all of them with lines that select them in a scene."""
     from tol3d.cad.step.reading import read_step
     from tol3d.errors import unwritable
     from tol3d.files import read_file
-    from tol3d.report.step_tables import features_csv, features_report
+    from tol3d.report.step_tables import features_csv, features_page, features_report
     from tol3d.study.runs.atomic_write import write_whole
 
-    found = read_step(read_file(file))
-    out_console.print(features_report(found))
+    with err_console.status(f"reading {file.name}"):
+        found = read_step(read_file(file))
+    out_console.print(features_report(found) if every else features_page(found))
     if csv is not None:
         try:
             write_whole(csv, features_csv(found).encode())
@@ -38,7 +42,8 @@ def features(
     if picture is not None:
         from tol3d.report.step_picture import draw_features
 
-        draw_features(found, picture)
+        with err_console.status("drawing"):
+            draw_features(found, picture)
         tell(str(picture))
 
 

@@ -11,7 +11,7 @@ from typing import Annotated, Final
 from tol3d.cad.step.datum import Datum
 from tol3d.cad.step.dimension import Dimension
 from tol3d.cad.step.feature import NamedFeature
-from tol3d.cad.step.found_features import FoundFeature
+from tol3d.cad.step.found_features import FeatureKind, FoundFeature
 from tol3d.cad.step.frame import frame
 from tol3d.cad.step.meaning import Meaning, Meanings, surfaces_of
 from tol3d.cad.step.outline import Remark, StepText, disagreements
@@ -25,8 +25,15 @@ from tol3d.report.declared import declared_table
 from tol3d.report.page import BLANK, Line, Page, PageItem, Table, line, note, page, titled
 from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
 
-UNDIRECTED: Final = ("ball", "socket", "free form")
+UNDIRECTED: Final = ("ball", "socket", "free form", "unread")
+ROUNDING: Final = 1e-6  # mm; splines that deviate by less are the surface that they are taken for
 TURNED: Final = ("hole", "pin", "fillet", "round", "cone")
+MOST_ROWS: Final = 40  # of a page, a terminal's height or so
+LEAST_ROWS: Final = 4  # of a product
+MOST_PARTS: Final = 8  # products on a page
+ORDER: Final[Sequence[FeatureKind]] = (
+    "hole", "pin", "ball", "socket", "cone", "plane", "torus", "fillet", "round", "free form", "unread",
+)  # fmt: skip
 LISTED: Final = 4  # faces of a feature, or layers of a file, that are listed
 WORDS: Final = (
     "a hole or pin turns more than half round, a fillet or round less; planes by the rectangle around them, or their "
@@ -41,9 +48,11 @@ class FeatureRow:
 
     part: StepPart
     feature: FoundFeature
-    kind = Computed(Shows("kind", "words"), lambda row: row.feature.kind + " (beside the solid)" * row.feature.loose)
+    kind = Computed(Shows("kind", "words"), lambda row: kind_text(row.feature))
     size = Computed(Shows("size [mm]", "words"), lambda row: size_text(row.feature))
-    place = Computed(Shows("place [mm]"), lambda row: _numbers(row.feature.at, 4))
+    place = Computed(
+        Shows("place [mm]"), lambda row: "–" if row.feature.kind == "unread" else _numbers(row.feature.at, 4)
+    )
     direction = Computed(
         Shows("direction"), lambda row: "–" if row.feature.kind in UNDIRECTED else _numbers(row.feature.direction, 4)
     )
@@ -62,6 +71,22 @@ class FeatureRow:
         ),
     )
     line = Computed(Shows("select it by", "words"), lambda row: best_line(row.part, row.feature))
+
+
+@dataclass(frozen=True)
+class AlikeRow:
+    """Features of one kind and size on a page, by the first of them."""
+
+    features: Sequence[FoundFeature]
+    part: StepPart
+    count = Computed(Shows("count", "words"), lambda row: f"{len(row.features)} ×" if len(row.features) > 1 else "")
+    kind = Computed(Shows("kind", "words"), lambda row: kind_text(row.features[0]))
+    size = Computed(Shows("size [mm]", "words"), lambda row: size_text(row.features[0]))
+    place = Computed(Shows("the first at [mm]"), lambda row: _numbers(row.features[0].at, 4))
+    drawn = Computed(
+        Shows("in the drawing", "words", optional=True),
+        lambda row: ", ".join(dict.fromkeys(each for own in row.features for each in _letters(row.part, own))) or "–",
+    )
 
 
 @dataclass(frozen=True)
@@ -107,12 +132,55 @@ class UseRow:
     x_axis = Computed(Shows("x"), lambda row: _numbers(row.frame[2], 6))
 
 
+def features_page(file: StepFile) -> Page:
+    """Features of a file on a page: those of one kind and size of a product in one row, MOST_ROWS rows in all."""
+    blocks: list[PageItem] = []
+    left = 0
+    room = max(LEAST_ROWS, MOST_ROWS // max(1, len(file.parts)))
+    for part in file.parts[:MOST_PARTS]:
+        rows = _alike(part)
+        left += sum(len(own.features) for _, own in rows[room:])
+        blocks += [BLANK] if blocks else []
+        blocks += [
+            Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))),
+            declared_table("", rows[:room]),
+            *_unread(part),
+        ]
+    words = []
+    if len(file.parts) > MOST_PARTS:
+        words.append(f"{len(file.parts) - MOST_PARTS} more products")
+    if left:
+        words.append(f"{left} more features")
+    if len(file.uses) > 1:
+        words.append(f"{len(file.uses)} parts as they stand in the file")
+    more = f"{', '.join(words)}; " if words else ""
+    return page(*blocks, BLANK, note(f"{more}--all lists each feature, with the line that selects it in a scene"))
+
+
+def _alike(part: StepPart) -> list[tuple[str, AlikeRow]]:
+    """Features of one kind and size together, those that hold others first, then the largest."""
+    groups: dict[tuple[str, str], list[tuple[str, FoundFeature]]] = {}
+    for name, own in zip(names(part.features), part.features, strict=True):
+        groups.setdefault((kind_text(own), size_text(own)), []).append((name, own))
+    ordered = sorted(
+        groups.values(),
+        key=lambda group: (ORDER.index(group[0][1].kind), -sum(own.area for _, own in group)),
+    )
+    return [(group[0][0], AlikeRow([own for _, own in group], part)) for group in ordered]
+
+
+def _letters(part: StepPart, feature: FoundFeature) -> list[str]:
+    """Letters of the datums on a feature."""
+    faces = {*feature.faces, *feature.repeated}
+    return [shown(each.name) for each in part.named if each.what == "datum" and faces & {*each.faces}]
+
+
 def features_report(file: StepFile) -> Page:
     """Features of each product of a file that has geometry of its own, a table each; poses if there are several."""
     blocks: list[PageItem] = []
     for part in file.parts:
         blocks += [BLANK] if blocks else []
-        blocks += [Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))), _table(part)]
+        blocks += [Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))), _table(part), *_unread(part)]
     if len(file.uses) > 1:
         blocks += [BLANK, *titled("parts as they stand in the file", _uses(file))]
     if file.layers:
@@ -122,6 +190,18 @@ def features_report(file: StepFile) -> Page:
             note(f"{len(file.layers)} layers are ignored: {named}{', …' if len(file.layers) > LISTED else ''}"),
         ]
     return page(*blocks, BLANK, note(WORDS))
+
+
+def _unread(part: StepPart) -> list[PageItem]:
+    """Faces of a part that cannot be read, or not triangulated, and what that means."""
+    noted = [note(f"#{face} cannot be read: {shown(why)}") for face, why in list(part.unread.items())[:LISTED]]
+    if len(part.unread) > LISTED:
+        noted.append(note(f"and {len(part.unread) - LISTED} more faces cannot be read"))
+    bare = sorted(part.bare - {*part.unread})
+    if bare:
+        listed = ", ".join(f"#{face}" for face in bare[:LISTED]) + (", …" if len(bare) > LISTED else "")
+        noted.append(note(f"Open CASCADE cannot triangulate {listed}: no picture has it, by its surface it is exact"))
+    return [*noted, note("a clearance of this part is refused")] if noted else []
 
 
 def _uses(file: StepFile) -> Table:
@@ -162,6 +242,12 @@ def _drawn(part: StepPart, feature: FoundFeature) -> list[str]:
         for each in part.named
         if faces & {*each.faces}
     ]
+
+
+def kind_text(feature: FoundFeature) -> str:
+    """The kind of a feature in words, with the deviation of splines that are taken for it."""
+    deviation = f" (spline within {1000 * feature.deviation:.2g} µm)" if feature.deviation > ROUNDING else ""
+    return feature.kind + deviation + " (beside the solid)" * feature.loose
 
 
 def size_text(feature: FoundFeature) -> str:

@@ -34,6 +34,10 @@ def new(
         Path | None, typer.Option(metavar="FILE", help="The scene to write; by default SYSTEM.yaml or FILE.yaml, here.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+    inspect: Annotated[
+        bool,
+        typer.Option("--inspect", help="Of --from: measure each tolerance of the files against its own limit too."),
+    ] = False,
 ) -> None:
     """Write a scene to start your own from, which runs: of a kind of system, or of files; alone list the kinds."""
     from tol3d.errors import InputError
@@ -42,10 +46,12 @@ def new(
 
     words = system or []
     if start is not None:
-        _draft([str(start), *words], seat or [], on or [], out, force)
+        _draft([str(start), *words], seat or [], on or [], out, force, inspect)
         return
     if seat or on:
         raise InputError("--seat: expected --from and STEP files beside it, whose parts are placed")
+    if inspect:
+        raise InputError("--inspect: expected --from and STEP files beside it, whose tolerances are inspected")
     if not words:
         if out is not None:
             raise InputError("--out: expected a kind of system before it; `tol3d new` lists them")
@@ -59,7 +65,9 @@ def new(
     _write(out or Path(f"{starter.name}.yaml"), starter.text, force)
 
 
-def _draft(words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out: Path | None, force: bool) -> None:
+def _draft(
+    words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out: Path | None, force: bool, inspect: bool
+) -> None:
     """Write a scene from STEP files, which are copied beside it where they lie elsewhere."""
     from tol3d.apps.drafting import Seat, scene_from
     from tol3d.apps.drafting.rexs import is_rexs
@@ -87,7 +95,9 @@ def _draft(words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out
     for path, content in copies:
         if path.exists() and path.read_bytes() != content:
             raise InputError(f"{path}: another file of that name lies beside the scene; --out names another folder")
-    text, drafted = scene_from(contents, [Seat(*own) for own in zip(seats, faces, strict=True)])
+    laid = [Seat(*own) for own in zip(seats, faces, strict=True)]
+    with err_console.status(f"reading {', '.join(names)}") as status:
+        text, drafted = scene_from(contents, laid, inspect=inspect, tell=status.update)
     for path, content in copies:
         if path.exists():
             continue

@@ -9,24 +9,30 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
 
+import numpy as np
+
 from tol3d.apps.drafting.drawing import source
 from tol3d.apps.drafting.entry import LAW as LAW_HERE
 from tol3d.apps.drafting.entry import Entry, Scene, Wording
 from tol3d.apps.drafting.fixture import fixture
+from tol3d.apps.drafting.measured import MOST_MEASURES, Candidate, Key, apart, between, ranked
 from tol3d.apps.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
-from tol3d.apps.drafting.touching_faces import ALONE, between, moves
+from tol3d.apps.drafting.touching_faces import ALONE, Contacts, moves
 from tol3d.apps.drafting.words import Names, cleaned, comment, length, scalar
 from tol3d.cad.step import FoundFeature, StepError, shown
 from tol3d.errors import InputError, SceneError
 from tol3d.files import FileContent
 from tol3d.scene import hint
 from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.study import drawn
 
 LAW: Final = "{kind: normal}"
 GUESS: Final = 0.1  # mm; zones where no file states any
+PER_PLAY: Final = 4.0  # guessed zones of a pair of pins in their holes: together they take half the play
 MOST_TRIES: Final = 200
 TRIALS: Final = 10_000
 LONGEST: Final = 240  # characters of a reason
+SAMPLE: Final = 256  # trials by which measures are ranked
 
 
 @dataclass(frozen=True)
@@ -45,11 +51,13 @@ class Draft:
         files: as they were read.
         parts: of the scene.
         entries: in the order in which they are written; the parts are not among them.
+        candidates: measures among which to choose; their entries are among the others.
     """
 
     files: Sequence[ReadText]
     parts: Sequence[DraftedPart]
     entries: Sequence[Entry]
+    candidates: Sequence[Candidate] = ()
 
     def scene(self) -> tuple[str, dict[int, Entry]]:
         """The text, and the entry of each line of it."""
@@ -111,9 +119,23 @@ class Draft:
             if listed:
                 yield f"# {heading}"
                 yield from (f"#   {line}" for line in listed)
+        yield from self.targets_told(own)
         yield from self.dimensions_told(own, reasons)
         if own.text.remarks:
             yield f"# {len(own.text.remarks)} remarks on what was not read or is incomplete: tol3d pmi lists them."
+
+    def targets_told(self, own: ReadText) -> Iterator[str]:
+        """Datum targets of a file whose places it does not give, each with a line to fill in."""
+        asked = [datum for datum in own.text.datums if datum.targets and datum.id not in own.meanings.datum_features]
+        if not asked:
+            return
+        yield "# The file does not say where these datum targets are. Fill in points of the part [mm] for each ?, and"
+        yield "# write the line in `datums` of the tolerances to it; its feature is the face that they are on:"
+        for datum in asked:
+            letter = comment(datum.letter)
+            named = ", ".join(f"{letter}{comment(target.number)} {comment(target.kind)}" for target in datum.targets)
+            places = ", ".join("[? mm, ? mm, ? mm]" for _ in datum.targets)
+            yield f"#   - {{feature: {letter}, simulator: targets, targets: [{places}]}}  # {named}"
 
     def dimensions_told(self, own: ReadText, reasons: dict[int, str]) -> Iterator[str]:
         """Outcome of each dimension of a file."""
@@ -155,8 +177,20 @@ def unread(read_text: ReadText, what: str) -> list[str]:
     return [f"#{each.id}: {comment(each.why, LONGEST)}" for each in lost]
 
 
-def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
+def draft(
+    contents: Sequence[FileContent],
+    seats: Sequence[Seat] = (),
+    *,
+    inspect: bool = False,
+    chosen: Sequence[Key] | None = None,
+) -> Draft:
     """A scene from STEP files, not yet checked.
+
+    Args:
+        contents: of the files.
+        seats: faces on which parts are laid.
+        inspect: whether each tolerance is measured against its own limit too.
+        chosen: measures between parts that it has; None for all that there may be.
 
     Raises:
         InputError: a file cannot be read, or a seat is of no part or face.
@@ -174,10 +208,31 @@ def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
             raise InputError(f"--on: expected a face of another part than {shown(seat.seat)!r}, got {shown(seat.on)!r}")
         seated(part, face, other, there)
     said = [entry for part in parts if not part.like for entry in part.drawing.entries]
-    placed = fixture(parts[0], names) if len(parts) == 1 else [*moves(parts, names), *between(parts, names)]
-    made = [*said, *placed, *something(parts, [*said, *placed], names)]
+    said = said if inspect else list(uninspected(said))
+    if len(parts) == 1:
+        placed, candidates = fixture(parts[0], names), list(apart(parts[0], names, chosen))
+    else:
+        contacts = Contacts(parts)
+        placed = list(moves(contacts, names))
+        candidates = list(between(contacts, names, chosen))
+    if chosen is not None:
+        candidates.sort(key=lambda own: chosen.index(own.key))
+    made = [*said, *placed, *(own.entry for own in candidates)]
+    made += something(parts, made, names)
     made += () if said else guessed(parts, names)
-    return Draft(files, parts, sorted(made, key=is_inspection))
+    return Draft(files, parts, sorted(made, key=is_inspection), candidates)
+
+
+def uninspected(entries: Sequence[Entry]) -> Iterator[Entry]:
+    """Entries without the measures of tolerances that are simulated: their zones hold by construction.
+
+    Of a tolerance that is inspected only, one measure is left.
+    """
+    told: set[int | None] = set()
+    for entry in entries:
+        if entry.inspects is None or (not entry.needs and entry.inspects not in told):
+            yield entry
+            told.add(entry.inspects)
 
 
 def is_inspection(entry: Entry) -> bool:
@@ -190,7 +245,8 @@ def guessed(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
     for part in parts:
         for group in () if part.like else part.features.groups:
             flat = group.kind == "plane"
-            zone = f"{{width: {length(GUESS)}}}" if flat else f"{{diameter: {length(GUESS)}}}"
+            width = float(f"{min(GUESS, part.features.play.get(group.name, GUESS) / PER_PLAY):.2g}")
+            zone = f"{{{'width' if flat or group.kind == 'slot' else 'diameter'}: {length(width)}}}"
             kind = "profile" if flat else "position"
             words = f"{{kind: {kind}, of: {part.of(group.name)}, zone: {zone}, law: {LAW_HERE}}}"
             name = names.new(f"{part.name} {group.name}", kind, len(group.members))
@@ -311,13 +367,26 @@ def entry_of(problem: str, by_line: Mapping[int, Entry]) -> Entry | None:
 SCENE = "scene.yaml"
 
 
-def scene_from(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> tuple[str, Draft]:
+def scene_from(
+    contents: Sequence[FileContent],
+    seats: Sequence[Seat] = (),
+    *,
+    inspect: bool = False,
+    tell: Callable[[str], None] = lambda words: None,
+) -> tuple[str, Draft]:
     """A scene from STEP files that `tol3d check` accepts and `tol3d run` runs, and its draft.
+
+    Args:
+        contents: of the files.
+        seats: faces on which parts are laid.
+        inspect: whether each tolerance is measured against its own limit too.
+        tell: progress callback, with words.
 
     Raises:
         InputError: a file cannot be read, or a seat is of no part or face.
     """
-    drafted = draft(contents, seats)
+    drafted = draft(contents, seats, inspect=inspect)
+    tell(f"checking {len(drafted.parts)} parts with {len(drafted.entries)} entries")
     with tempfile.TemporaryDirectory(prefix="tol3d-new-") as made:
         folder = Path(made)
         for content in contents:
@@ -327,4 +396,20 @@ def scene_from(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> t
             (folder / SCENE).write_text(text, encoding="utf-8")
             simulation_of(load(folder / SCENE), Overrides())
 
-        return settled(drafted, check), drafted
+        text = settled(drafted, check)
+        if drafted.candidates:
+            others = [own for own in drafted.entries if own.section == "measures" and own.stands and not own.needs]
+            tell(f"ranking {len(drafted.candidates)} measures")
+            most = MOST_MEASURES - (len(others) - sum(own.entry.stands for own in drafted.candidates))
+            chosen = ranked(drafted.candidates, deviations(folder / SCENE), max(most, 0))
+            drafted = draft(contents, seats, inspect=inspect, chosen=chosen)
+            text = settled(drafted, check)
+        return text, drafted
+
+
+def deviations(path: Path) -> dict[str, float]:
+    """Standard deviation of each measure of a scene over SAMPLE trials by the analytic method [mm]."""
+    simulation = simulation_of(load(path), Overrides())
+    method = simulation.system.method("analytic", simulation.system.materials("analytic"))
+    answers = method.answers(drawn(simulation, 0, SAMPLE), simulation.system.measures)
+    return {name: float(np.std(values)) for name, values in answers.values.items()}

@@ -302,7 +302,8 @@ class Drawing(Drawn):
         name = self.names.new(tolerance.name or kind.replace("_", " "), kind, count)
         locates = tolerance.kind in LOCATIONS and kind not in TURNED and kind not in FORMS
         if locates and kind not in INSPECTED and group.name in self.located:
-            self.doubled[tolerance.id] = f"#{self.located[group.name]} locates the feature: this one is inspected"
+            words = f"#{self.located[group.name]} locates the feature: this one is inspected only, without a verdict"
+            self.doubled[tolerance.id] = words
             kind = "inspected_position"
         if kind in INSPECTED:
             self.inspect(tolerance, kind, group, datums, remark)
@@ -424,7 +425,10 @@ class Drawing(Drawn):
         remark: str,
         entry: Entry | None = None,
     ) -> None:
-        """Measures of a tolerance's own limit, one of each feature."""
+        """Measures of a tolerance, one of each feature: against its own limit, if the scene draws within its zone.
+
+        Another one, such as a second location of a feature, is inspected without a verdict.
+        """
         assert tolerance.magnitude is not None
         turned = kind in TURNED or kind == "inspected_orientation"
         measured = "inspected_orientation" if turned else "inspected_position"
@@ -440,7 +444,7 @@ class Drawing(Drawn):
         along = self.meanings.limited(tolerance, group.members[0].direction)
         if turned and group.kind == "cylinder" and tolerance.zone == "width" and along is not None:
             projected += f", direction: {direction(along)}"
-        limit = length(max(tolerance.magnitude.value, SMALLEST_ZONE))
+        limit = f", upper_limit: {length(max(tolerance.magnitude.value, SMALLEST_ZONE))}" if entry is not None else ""
         label = tolerance.name or kind.replace("_", " ")
         needs = (entry,) if entry is not None else ()
         for feature in group.names:
@@ -452,7 +456,8 @@ class Drawing(Drawn):
                     of = f"[{self.of(feature)}]" if measured == "inspected_set" else self.of(feature)
                     head = f"{{kind: {measured}, of: {of}{surface}{frame_words}{extra}{projected}"
                     lost = "" if bonus == modifier else "inspected without the bonus"
-                    words.append(Wording((f"{head}, upper_limit: {limit}}}",), "" if entry else remark, lost))
+                    told = "" if entry else f"{remark}: inspected only, without a verdict"
+                    words.append(Wording((f"{head}{limit}}}",), told, lost))
             number = f" {feature.removeprefix(group.name).strip()}" if len(group.names) > 1 else ""
             name = self.names.new(f"inspected {label}{number}", measured)
             source_id = None if entry is not None else tolerance.id

@@ -67,11 +67,20 @@ class Features:
         part: the part as it was read.
         names: those that are given.
         groups: selected features; grows.
+        play: least play [mm] of the pairs in which each group is, by its name; grows.
     """
 
     part: StepPart
     names: Names = field(default_factory=lambda: Names(UNNAMEABLE_FEATURE))
     groups: list[Group] = field(default_factory=list)
+    play: dict[str, float] = field(default_factory=dict)
+
+    def plays(self, members: Sequence[FoundFeature], play: float) -> None:
+        """Note the play of a pair in which a feature, or the slot of two walls, is."""
+        for group in self.groups:
+            own = group.slot or group.members
+            if {each.faces for each in own} & {each.faces for each in members}:
+                self.play[group.name] = min(play, self.play.get(group.name, play))
 
     def of_faces(self, faces: Sequence[int], skipped: frozenset[str] = frozenset()) -> list[FoundFeature]:
         """The features of the part to which faces belong.

@@ -1,5 +1,6 @@
 """The parts of a drafted scene: one of each use in each file, those of one product alike."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -26,6 +27,7 @@ from tol3d.numerics.arrays import Array
 
 STILL: Final = 1e-12
 MOST_PARTS: Final = 200  # of one scene that a person reads
+MOST_SIGNS: Final = 24  # of a part's name that a person types
 
 
 @dataclass
@@ -125,18 +127,40 @@ def drafted_parts(files: Sequence[ReadText], names: Names) -> Iterator[DraftedPa
         raise StepError(f"expected at most {MOST_PARTS} parts in a scene, got {count}")
     for file in files:
         first: dict[int, DraftedPart] = {}
+        wishes = use_names(file.file)
         for use in file.file.uses:
-            made = drafted_part(file, use, names, first.get(use.product))
+            made = drafted_part(file, use, names.new(wishes[use.path], "part"), names, first.get(use.product))
             first.setdefault(use.product, made)
             yield made
 
 
-def drafted_part(read_text: ReadText, use: Use, names: Names, like: DraftedPart | None) -> DraftedPart:
+def use_names(file: StepFile) -> dict[str, str]:
+    """A short name of each use, by its path: its own if those of its product differ, else the product's, numbered."""
+    named: dict[str, str] = {}
+    for part in file.parts:
+        uses = [use.path for use in file.uses if use.product == part.body.product]
+        own = [path.rpartition("/")[2] for path in uses]
+        counted = re.compile(re.escape(part.body.name) + r"(?:_[0-9]+)?")  # numbered for want of names
+        told = len({*own}) == len(own) > 1 and not all(map(counted.fullmatch, own))
+        short = shortened(part.name)
+        numbered = [short] if len(uses) == 1 else [f"{short} {k}" for k in range(1, len(uses) + 1)]
+        named |= zip(uses, map(shortened, own) if told else numbered, strict=True)
+    return named
+
+
+def shortened(text: str) -> str:
+    """A name of at most MOST_SIGNS, cut between its words if it has any that early."""
+    whole = text.replace(".", " ").strip()
+    if len(whole) <= MOST_SIGNS:
+        return whole
+    cut = max(whole.rfind(sign, MOST_SIGNS // 2, MOST_SIGNS + 1) for sign in " _-")
+    return whole[: cut if cut > 0 else MOST_SIGNS].rstrip(" _-")
+
+
+def drafted_part(read_text: ReadText, use: Use, name: str, names: Names, like: DraftedPart | None) -> DraftedPart:
     """The part of one use."""
     part = next(each for each in read_text.file.parts if each.body.product == use.product)
     single = len(read_text.file.uses) == 1
-    name = names.new(use.path.rpartition("/")[2], read_text.file.content.path.stem)
-    name = name if "." not in name else names.new(name.replace(".", " "), "part")
     features = like.features if like is not None else Features(part)
     pose = np.eye(4) if single else posed(use)
     selection = "" if single else f"use: {scalar(use.path)}"

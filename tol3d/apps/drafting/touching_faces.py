@@ -1,22 +1,23 @@
-"""Moves of several parts from the faces that touch as they stand, and measures between them."""
+"""Moves of several parts from the faces that touch as they stand."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Final
 
 import numpy as np
 
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.parts import DraftedPart
-from tol3d.apps.drafting.words import Names, across, direction, length, number, scalar
+from tol3d.apps.drafting.slots import PinInSlot, pins_in_slots
+from tol3d.apps.drafting.words import Names, number, scalar
 from tol3d.assembly import Cone, cone_seat, unfit_cones
 from tol3d.cad.step import FoundFeature
 from tol3d.numerics.arrays import Array
 
 TOUCHING: Final = 1e-3  # mm; what models are drawn to
 PARALLEL: Final = 1e-6  # sine, cosine
-MOST_GAPS: Final = 4  # of two parts
-MOST_OFFSETS: Final = 4  # pairs of coaxial holes of two parts
+LARGEST_BOLT: Final = 3.0  # diameters of the smallest hole beside it
 THINNEST_BOLT: Final = 0.5  # of the hole; a thinner guess is none
 ALONE: Final = "it touches no other part as it stands"
 BOLT_LESS: Final = 0.1  # of the hole, where no position says how much
@@ -64,20 +65,22 @@ class Coaxial:
 def facing(part: DraftedPart, other: DraftedPart) -> list[Faces]:
     """Faces of two parts that look at each other and overlap, the nearest first, then the largest."""
     found = []
-    planes = [[own for own in each.features.part.features if own.kind == "plane" and not own.loose]
-              for each in (part, other)]  # fmt: skip
-    for there in planes[1]:
-        normal, at = other.along(there.direction), other.at(there)
-        for own in planes[0]:
-            if float(part.along(own.direction) @ normal) > -1.0 + PARALLEL:
-                continue
-            gap = float((part.at(own) - at) @ normal)
-            if gap < -TOUCHING:
-                continue
-            area = overlap(corners(part, own), corners(other, there), other.along(there.x), normal)
-            if area > 0.0:
-                found.append(Faces(part, other, own, there, gap, area))
+    (own_planes, normals, places), (planes, other_normals, other_places) = flat(part), flat(other)
+    opposed = normals @ other_normals.T <= -1.0 + PARALLEL
+    gaps = places @ other_normals.T - np.einsum("ij,ij->i", other_places, other_normals)
+    for k, j in zip(*np.nonzero(opposed & (gaps >= -TOUCHING)), strict=True):
+        own, there = own_planes[k], planes[j]
+        area = overlap(corners(part, own), corners(other, there), other.along(there.x), other_normals[j])
+        if area > 0.0:
+            found.append(Faces(part, other, own, there, float(gaps[k, j]), area))
     return sorted(found, key=lambda each: (round(each.gap, 3), -each.area))
+
+
+def flat(part: DraftedPart) -> tuple[list[FoundFeature], Array, Array]:
+    """The flat faces of a part, their normals and middles in the world (n, 3)."""
+    found = [own for own in part.features.part.features if own.kind == "plane" and not own.loose]
+    normals = np.array([own.direction for own in found]).reshape(-1, 3) @ part.pose[:3, :3].T
+    return found, normals, np.array([own.at for own in found]).reshape(-1, 3) @ part.pose[:3, :3].T + part.pose[:3, 3]
 
 
 def corners(part: DraftedPart, plane: FoundFeature) -> Array:
@@ -162,23 +165,91 @@ def same_line(first: Coaxial, second: Coaxial) -> bool:
     )
 
 
-def moves(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
-    """The first part fixed, each other one laid on the parts that it touches, or fixed if it touches none."""
-    first = parts[0]
-    yield Entry("moves", scalar(names.new(f"{first.name} fixed", "fixed")), [fixed(first)])
-    placed, waiting = [first], list(parts[1:])
+@dataclass(frozen=True)
+class Contacts:
+    """Faces of parts that touch or look at each other in their poses, each pair of parts compared once.
+
+    Args:
+        parts: all of a scene.
+    """
+
+    parts: Sequence[DraftedPart]
+    _known: dict[tuple[str, str, str], list[Any]] = field(default_factory=dict)
+
+    def facing(self, part: DraftedPart, other: DraftedPart) -> list[Faces]:
+        """See `facing`."""
+        return self._once("facing", facing, part, other)
+
+    def coaxial(self, part: DraftedPart, other: DraftedPart) -> list[Coaxial]:
+        """See `coaxial`."""
+        return self._once("coaxial", coaxial, part, other)
+
+    def seats(self, part: DraftedPart, other: DraftedPart) -> list[Coaxial]:
+        """See `seats`."""
+        return self._once("seats", seats, part, other)
+
+    def _once(
+        self, word: str, find: Callable[[DraftedPart, DraftedPart], list[Any]], part: DraftedPart, other: DraftedPart
+    ) -> list[Any]:
+        key = word, part.name, other.name
+        if key not in self._known:
+            self._known[key] = find(part, other)
+        return self._known[key]
+
+    def slotted(self, part: DraftedPart, other: DraftedPart) -> list[PinInSlot]:
+        """See `pins_in_slots`."""
+        return self._once("slotted", pins_in_slots, part, other)
+
+    def touch(self, part: DraftedPart, other: DraftedPart) -> bool:
+        """True if faces of two parts touch in their poses."""
+        meets = any(own.gap < TOUCHING for own in self.facing(part, other))
+        return meets or bool(self.coaxial(part, other)) or bool(self.seats(part, other))
+
+    @cached_property
+    def neighbours(self) -> Mapping[str, int]:
+        """Number of parts that each one touches."""
+        counts = dict.fromkeys((part.name for part in self.parts), 0)
+        for k, part in enumerate(self.parts):
+            for other in self.parts[:k]:
+                if self.touch(part, other):
+                    counts[part.name] += 1
+                    counts[other.name] += 1
+        return counts
+
+    @property
+    def base(self) -> DraftedPart:
+        """The part that holds the others: the largest with most contacts, the first of those that are alike."""
+        return max(self.parts, key=lambda part: (1 + self.neighbours[part.name]) * size_of(part))
+
+    def bolts(self, own: Coaxial) -> list[FoundFeature]:
+        """Pins of third parts that stand in both holes of a pair."""
+        found = []
+        for part in self.parts:
+            if part.name in (own.part.name, own.other.name):
+                continue
+            ends = self.coaxial(part, own.part), self.coaxial(part, own.other)
+            pins = [{each.own.faces: each.own for each in end if same_line(each, own)} for end in ends]
+            found += [pin for faces, pin in pins[0].items() if faces in pins[1] and not pin.hollow]
+        return found
+
+
+def size_of(part: DraftedPart) -> float:
+    """Area of all faces of a part [mm²]."""
+    return round(sum(own.area for own in part.features.part.features if not own.loose), 3)
+
+
+def moves(contacts: Contacts, names: Names) -> Iterator[Entry]:
+    """The base fixed, each other part laid on those that it touches, the largest first; fixed if it touches none."""
+    base = contacts.base
+    yield Entry("moves", scalar(names.new(f"{base.name} fixed", "fixed")), [fixed(base)])
+    placed = [base]
+    waiting = sorted((part for part in contacts.parts if part is not base), key=lambda part: -size_of(part))
     while waiting:
-        own = next((each for each in waiting if any(touches(each, other) for other in placed)), waiting[0])
+        own = next((each for each in waiting if any(contacts.touch(each, other) for other in placed)), waiting[0])
         waiting.remove(own)
-        others = [each for each in placed if touches(own, each)]
-        yield from move(own, others, names)
+        others = [each for each in placed if contacts.touch(own, each)]
+        yield from move(own, others, contacts, names)
         placed.append(own)
-
-
-def touches(part: DraftedPart, other: DraftedPart) -> bool:
-    """True if faces of two parts touch in their poses."""
-    meets = any(own.gap < TOUCHING for own in facing(part, other))
-    return meets or bool(coaxial(part, other)) or bool(seats(part, other))
 
 
 def fixed(part: DraftedPart) -> Wording:
@@ -186,28 +257,38 @@ def fixed(part: DraftedPart) -> Wording:
     return Wording((f"{{kind: fix, part: {scalar(part.name)}}}",), "guess")
 
 
-def move(part: DraftedPart, others: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
+def move(part: DraftedPart, others: Sequence[DraftedPart], contacts: Contacts, names: Names) -> Iterator[Entry]:
     """The move of one part, by the faces and holes that touch."""
     relations: list[str] = []
     normals: list[Array] = []
-    axes = [own for other in others for own in coaxial(part, other)]
-    for seat in [own for other in others for own in seats(part, other)][:1]:
+    axes = [own for other in others for own in contacts.coaxial(part, other)]
+    for seat in [own for other in others for own in contacts.seats(part, other)][:1]:
         normals.append(seat.axis)  # a face across it takes nothing, nor does what lies on its line
         axes = [axis for axis in axes if not same_line(axis, seat)]
         relations.append(
             f"  - {{kind: coincident, from: {feature(part, seat.own)}, to: {feature(seat.other, seat.there)}}}"
         )
-    contacts = [own for other in others for own in facing(part, other) if own.gap < TOUCHING]
-    for contact in sorted(contacts, key=lambda each: -each.area):
+    touching = [own for other in others for own in contacts.facing(part, other) if own.gap < TOUCHING]
+    seated_on = None
+    for contact in sorted(touching, key=lambda each: -each.area):
         normal = contact.other.along(contact.there.direction)
         if any(abs(float(normal @ known)) > 0.9 for known in normals):
             continue
         if normals and axes:
             break  # pins and bolts hold the rest
+        seated_on = seated_on or contact.other.name
         normals.append(normal)
         moving, target = feature(part, contact.face), feature(contact.other, contact.there)
         relations.append(f"  - {{kind: coincident, from: {moving}, to: {target}}}")
-    square = [axis for axis in axes if not normals or abs(float(axis.axis @ normals[0])) > 1.0 - PARALLEL]
+    # of what lies on one line a pin in a hole holds, of several in that of the part with the seat
+    ranked = sorted(axes, key=lambda axis: (axis.holes, axis.other.name != seated_on))
+    lines: list[Coaxial] = []
+    for axis in ranked:
+        if not any(same_line(axis, known) for known in lines):
+            lines.append(axis)
+    square = [axis for axis in lines if not normals or abs(float(axis.axis @ normals[0])) > 1.0 - PARALLEL]
+    square = [axis for axis in square if is_bolted(axis, square)] or square
+    in_slots = [own for other in others for own in contacts.slotted(part, other)] if relations and square else []
     name = scalar(names.new(f"{part.name} placed", "placed"))
     if not relations and not square:
         yield Entry("moves", name, [Wording(fixed(part).lines, f"guess: {ALONE}")])
@@ -218,16 +299,27 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], names: Names) -> Iter
     ]
     head = ("kind: mate", f"part: {scalar(part.name)}", "relations:")
     ways = []
-    if square and relations and (pairs := [playing(own) for own in square]) and all(pairs):
+    if square and relations and (pairs := [playing(own, contacts) for own in square]) and all(pairs):
         made = [own for own in pairs if own is not None]
         for pair in square:
-            yield from unsized(pair, names)
-        lines = ("kind: pattern", f"part: {scalar(part.name)}", "float: {kind: random}",
+            yield from unsized(((pair.part, pair.own), (pair.other, pair.there)), names)
+        for slotted in in_slots if all(own.play > TOUCHING for own in in_slots) else ():
+            made.append(slotted.pair(part))
+            slotted.slotted.features.plays(slotted.slot.walls, slotted.play)
+            slotted.pinned.features.plays([slotted.pin], slotted.play)
+            yield from unsized(((slotted.pinned, slotted.pin), (slotted.slotted, slotted.slot.walls[0])), names)
+        words = ("kind: pattern", f"part: {scalar(part.name)}", "float: {kind: random}",
                  "relations:", *relations[:1], "pairs:", *made)  # fmt: skip
-        ways.append(Wording(lines, "guess: faces that touch, with pins and bolts in their play"))
+        ways.append(Wording(words, "guess: faces that touch, with pins and bolts in their play"))
     both = [*relations, *mated]
     ways += [Wording((*head, *both[:k]), "guess: faces and axes that meet") for k in range(len(both), 0, -1)]
     yield Entry("moves", name, [*ways, fixed(part)])
+
+
+def is_bolted(own: Coaxial, others: Sequence[Coaxial]) -> bool:
+    """False of holes in line that are far larger than others beside them: a bore for a shaft, not for a bolt."""
+    smallest = min(min(each.own.radius, each.there.radius) for each in others)
+    return not own.holes or min(own.own.radius, own.there.radius) <= LARGEST_BOLT * smallest
 
 
 def feature(part: DraftedPart, found_feature: FoundFeature) -> str:
@@ -235,17 +327,30 @@ def feature(part: DraftedPart, found_feature: FoundFeature) -> str:
     return part.of(part.features.name(found_feature))
 
 
-def playing(own: Coaxial) -> str | None:
+def playing(own: Coaxial, contacts: Contacts) -> str | None:
     """A pair of a pattern: a pin in a larger hole, or two holes with a bolt; None where there is no play."""
     words = f"from: {feature(own.part, own.own)}, to: {feature(own.other, own.there)}"
     if not own.holes:
-        return f"  - {{{words}}}" if abs(own.own.radius - own.there.radius) > TOUCHING else None
-    bolt = min(largest_bolt(part, each) for part, each in ((own.part, own.own), (own.other, own.there)))
-    if bolt < THINNEST_BOLT * 2 * min(own.own.radius, own.there.radius):
+        noted(own, 2 * abs(own.own.radius - own.there.radius))
+        return f"  - {{{words}}}" if 2 * abs(own.own.radius - own.there.radius) > TOUCHING else None
+    hole = 2 * min(own.own.radius, own.there.radius)
+    known = contacts.bolts(own)
+    if known:
+        bolt, why = 2 * max(pin.radius for pin in known), "that of the part in both holes"
+    else:
+        bolt = min(largest_bolt(part, each) for part, each in ((own.part, own.own), (own.other, own.there)))
+        why = "guess: each hole at its smallest less its position"
+    if bolt < THINNEST_BOLT * hole or hole - bolt <= TOUCHING:
         return None
+    noted(own, hole - bolt)
     size = f"{number(round(bolt, 3))} mm"
-    why = "guess: each hole at its smallest less its position"
     return f"  - {{{words}, bolt: {{diameter: {size}, distribution: {{kind: constant, value: 0 mm}}}}}}  # {why}"
+
+
+def noted(own: Coaxial, play: float) -> None:
+    """Note the play of a pair with both its features."""
+    for part, member in ((own.part, own.own), (own.other, own.there)):
+        part.features.plays([member], play)
 
 
 def largest_bolt(part: DraftedPart, hole: FoundFeature) -> float:
@@ -266,51 +371,16 @@ def largest_bolt(part: DraftedPart, hole: FoundFeature) -> float:
     return least - max(zones) if zones else least * (1.0 - BOLT_LESS)
 
 
-def unsized(own: Coaxial, names: Names) -> Iterator[Entry]:
-    """Sizes of holes and pins of which the file states none, without deviations: play is by sizes."""
-    for part, each in ((own.part, own.own), (own.other, own.there)):
+def unsized(ends: Sequence[tuple[DraftedPart, FoundFeature]], names: Names) -> Iterator[Entry]:
+    """Sizes of holes, pins and slots of which the file states none, without deviations: play is by sizes."""
+    for part, each in ends:
         known = part.features.named(each)
-        if known is None or known[0].name in part.drawing.sizes:
+        slot = next((own for own in part.features.groups if own.slot and own.slot[0].faces == each.faces), None)
+        group = slot if known is None or each.kind == "plane" else known[0]
+        if group is None or group.name in part.drawing.sizes:
             continue
-        group = known[0]
         line = f"{{kind: size, of: {part.first_of(group.name)}, distribution: {{kind: constant, value: 0 mm}}}}"
         name = scalar(names.new(f"{group.name} size", "size", len(group.members)))
         entry = Entry("tolerances", name, [Wording((line,), "guess: the file states no limits")])
         part.drawing.sizes[group.name] = entry
         yield entry
-
-
-def between(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
-    """Measures between parts: gaps of the nearest parallel faces, offsets of coaxial holes."""
-    for k, part in enumerate(parts):
-        for other in parts[:k]:
-            yield from gaps(part, other, names)
-            for own in coaxial(part, other)[:MOST_OFFSETS]:
-                yield from offsets(own, names)
-
-
-def gaps(part: DraftedPart, other: DraftedPart, names: Names) -> Iterator[Entry]:
-    """Gaps between the nearest faces of two parts that do not touch, one of each direction first."""
-    apart = [own for own in facing(part, other) if own.gap > TOUCHING]
-    taken: list[FoundFeature] = []
-    count = 0
-    for own in apart:
-        if count < MOST_GAPS and own.face not in taken and own.there not in taken:
-            taken += [own.face, own.there]
-            count += 1
-            along = direction(own.there.direction)
-            words = (
-                f"{{kind: gap, from: {feature(own.other, own.there)}, to: {feature(own.part, own.face)}, "
-                f"along: {along}}}"
-            )
-            name = names.new(f"gap {own.part.name} to {own.other.name} {count}", "gap")
-            yield Entry("measures", scalar(name), [Wording((words,), f"guess: nominally {length(own.gap)}")])
-
-
-def offsets(own: Coaxial, names: Names) -> Iterator[Entry]:
-    """Offsets between the axes of a coaxial pair, along two directions across."""
-    start, end = feature(own.other, own.there), feature(own.part, own.own)
-    for along in across(own.there.direction):
-        words = f"{{kind: gap, from: {start}, to: {end}, along: {direction(along)}}}"
-        name = names.new(f"offset of {own.part.name} on {own.other.name}", "offset")
-        yield Entry("measures", scalar(name), [Wording((words,), "guess")])

@@ -22,6 +22,8 @@ Bools = NDArray[np.bool_]
 
 PAIRS_AT_ONCE = 2_000_000
 """Boxes of triangles compared at once: some tens of megabytes."""
+MOST_LISTED = 8
+"""Faces that an error lists."""
 THIN = 1e-12
 """mm or mm^2; length of a vector without a direction."""
 OPPOSED = 1e-3
@@ -270,8 +272,11 @@ def solid_mesh(shape: BuiltShape, within: float) -> SolidMesh:
         within: largest chord error [mm].
 
     Raises:
-        GeometryError: it would take too many triangles.
+        GeometryError: it would take too many triangles, or the solid has faces of which there are none.
     """
+    if lacking := shape.open_faces():
+        listed = ", ".join(lacking[:MOST_LISTED])
+        raise GeometryError(f"a clearance would miss its faces that cannot be triangulated: {listed}")
     mesh = display_mesh(shape, COARSE)
     deflection = COARSE
     for _ in range(TRIES):

@@ -73,7 +73,7 @@ def planned_answers(
     for start in range(0, len(deviations), BLOCK):
         rows = slice(start, start + BLOCK)
         own = None if kept is None else kept.setdefault(start, {})
-        block = _placed(plan, deviations[rows], kept=own)
+        block = _placed(plan, deviations[rows], kept=own, measure=names[0] if len(names) == 1 else "")
         for name, (numbers, codes) in found.items():
             numbers[rows], codes[rows] = _over_rests(plan, block, name, deviations[rows])
         codes_here = {name: codes[rows] for name, (_, codes) in found.items()}

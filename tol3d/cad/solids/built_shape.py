@@ -23,6 +23,14 @@ class BuiltShape(ABC):
     Its module may import CadQuery: it is loaded when a solid is built, and never by opening a scene.
     """
 
+    def open_faces(self) -> Sequence[str]:
+        """Names of faces of the solid that its mesh lacks, because they cannot be read or triangulated.
+
+        Raises:
+            InputError: the mesh cannot be made.
+        """
+        return ()
+
 
 @dataclass(frozen=True)
 class SweptShape(BuiltShape):

@@ -1,6 +1,8 @@
 """Products of a STEP file with geometry of their own, and the names and colours of their faces, by the text."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 from tol3d.cad.step.part21 import Part21
@@ -28,18 +30,21 @@ class Body:
     Args:
         product: the `#id` of its definition.
         name: its name in the file.
-        solids: the `#ids` of its solids.
-        faces: the `#ids` of the faces of its solids.
+        solids: the `#ids` of the faces of each of its solids, by that of the solid.
         loose: those of faces beside them.
         unit: one of its length in mm.
     """
 
     product: int
     name: str
-    solids: tuple[int, ...]
-    faces: frozenset[int]
+    solids: Mapping[int, tuple[int, ...]]
     loose: frozenset[int]
     unit: float
+
+    @cached_property
+    def faces(self) -> frozenset[int]:
+        """The `#ids` of the faces of its solids."""
+        return frozenset(face for faces in self.solids.values() for face in faces)
 
 
 def bodies_of(file: Part21, structure: Structure) -> tuple[Body, ...]:
@@ -53,8 +58,7 @@ def bodies_of(file: Part21, structure: Structure) -> tuple[Body, ...]:
         Body(
             product.id,
             product.name,
-            tuple(solid.id for solid in product.solids),
-            frozenset(face for solid in product.solids for face in solid.faces),
+            {solid.id: solid.faces for solid in product.solids},
             frozenset(product.loose_faces),
             _unit(file, reader.represented.get(product.shape or 0, ())),
         )

@@ -27,12 +27,14 @@ class FaceMesh:
         triangles: (m, 3) vertex numbers, turned outwards.
         faces: (m,) the number in the file of the face of each.
         off: (k, 2) face and largest distance between it and its triangles.
+        bare: faces that cannot be triangulated.
     """
 
     vertices: Array
     triangles: NDArray[np.int64]
     faces: NDArray[np.int64]
     off: Array
+    bare: frozenset[int] = frozenset()
 
     @classmethod
     def of(cls, arrays: Arrays) -> "FaceMesh":
@@ -44,7 +46,8 @@ class FaceMesh:
         nodes, corners = arrays["nodes"].astype(np.float64), arrays["corners"].astype(np.int64)
         owners, off = arrays["faces"].astype(np.int64), arrays["off"].astype(np.float64)
         fits = nodes.ndim == corners.ndim == off.ndim == 2 and corners.shape == (len(owners), 3) and off.shape[1] == 2
-        if not fits or not np.isfinite(nodes).all() or corners.min() < 0 or corners.max() >= len(nodes):
+        inside = corners.min(initial=0) >= 0 and corners.max(initial=-1) < len(nodes)
+        if not fits or not np.isfinite(nodes).all() or not inside:
             raise ValueError("no mesh")
         _, first, number = np.unique(
             np.round(nodes / JOINED).astype(np.int64), axis=0, return_index=True, return_inverse=True
@@ -52,7 +55,8 @@ class FaceMesh:
         triangles = number.ravel()[corners]
         a, b, c = triangles.T
         whole = (a != b) & (b != c) & (c != a)
-        return cls(nodes[first], triangles[whole], owners[whole], off)
+        bare = frozenset(arrays["bare"].astype(np.int64).tolist())
+        return cls(nodes[first], triangles[whole], owners[whole], off, bare)
 
     @property
     def chord_error(self) -> float:
@@ -65,18 +69,18 @@ class FaceMesh:
         own = np.isin(self.faces, numbers)
         used, triangles = np.unique(self.triangles[own], return_inverse=True)
         off = self.off[np.isin(self.off[:, 0], numbers)]
-        return FaceMesh(self.vertices[used], triangles.reshape(-1, 3), self.faces[own], off)
+        return FaceMesh(self.vertices[used], triangles.reshape(-1, 3), self.faces[own], off, self.bare & faces)
 
     def corners(self, faces: Sequence[int]) -> Array:
         """Corners (m, 3, 3) of the triangles of some faces."""
         own = np.isin(self.faces, np.array(faces, dtype=np.int64))
         return np.asarray(self.vertices[self.triangles[own]])
 
-    def middle(self, faces: Sequence[int]) -> Triple:
-        """A point of some faces: the middle of their largest triangle, to a tenth of a micrometre."""
+    def middle(self, faces: Sequence[int]) -> Triple | None:
+        """A point of some faces: the middle of their largest triangle, to a tenth of a micrometre; None without any."""
         corners = self.corners(faces)
         if not len(corners):
-            return 0.0, 0.0, 0.0
+            return None
         areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
         x, y, z = (round(float(own), DECIMALS) + 0.0 for own in corners[int(np.argmax(areas))].mean(axis=0))
         return x, y, z

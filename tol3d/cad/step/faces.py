@@ -44,10 +44,11 @@ class Face(BaseModel):
         id: its number in the file.
         kind: of its surface.
         at, axis, x, y: of the surface's own frame; none of a free form.
-        turn: angles about the axis between which it lies, from x towards y; none of a recognised spline.
+        turn: angles about the axis between which it lies, from x towards y; none of a free form.
         radius: of a cylinder or sphere; of a cone where its frame is, of a torus the larger one.
         half_angle: of a cone.
         minor_radius: of a torus.
+        deviation: largest distance of a recognised spline from the surface that it is taken for.
         area: [mm²].
         centre: of its area.
         place, normal: a point of its surface, and the direction out of the material there.
@@ -66,6 +67,7 @@ class Face(BaseModel):
     radius: Size = 0.0
     half_angle: Annotated[float, Field(ge=-STEEPEST, le=STEEPEST)] = 0.0
     minor_radius: Size = 0.0
+    deviation: Size = 0.0
     area: Area
     centre: Place
     place: Place
@@ -155,11 +157,17 @@ class Root(BaseModel):
 
 
 class Faces(BaseModel):
-    """All of a file."""
+    """All of a file.
+
+    Args:
+        roots: its solids and shells.
+        unread: numbers of faces that cannot be read, and why.
+    """
 
     model_config = READ
 
     roots: tuple[Root, ...]
+    unread: tuple[tuple[int, str], ...] = ()
 
     @property
     def by_id(self) -> Mapping[int, Face]:

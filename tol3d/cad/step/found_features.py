@@ -29,10 +29,9 @@ ALONG: Final = 0.9
 
 Triple = tuple[float, float, float]
 
-FeatureKind = Literal["plane", "hole", "pin", "fillet", "round", "cone", "ball", "socket", "torus", "free form"]
-KINDS: Final[tuple[FeatureKind, ...]] = (
-    "plane", "hole", "pin", "fillet", "round", "cone", "ball", "socket", "torus", "free form",
-)  # fmt: skip
+FeatureKind = Literal[
+    "plane", "hole", "pin", "fillet", "round", "cone", "ball", "socket", "torus", "free form", "unread"
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -59,6 +58,7 @@ class FoundFeature:
         on: a point of it.
         radii: of a cone, at the start and at the end of its axis.
         outside: of a cone, whether the material lies outside.
+        deviation: largest distance of splines from the surface that they are taken for [mm].
     """
 
     faces: tuple[int, ...]
@@ -79,6 +79,7 @@ class FoundFeature:
     on: Triple = (0.0, 0.0, 0.0)
     radii: tuple[float, float] = (0.0, 0.0)
     outside: bool = False
+    deviation: float = 0.0
 
     @property
     def length(self) -> float:
@@ -222,7 +223,8 @@ class Shell:
             found = FoundFeature(
                 tuple(ids), "free form", lengths_of(face.centre), cosines_of(face.normal), (1.0, 0.0, 0.0)
             )
-        return replace(found, area=round(area, DECIMALS), loose=ids[0] in self.loose)
+        deviation = max(self.faces[number].deviation for number in ids)
+        return replace(found, area=round(area, DECIMALS), loose=ids[0] in self.loose, deviation=deviation)
 
     def is_one(self, ids: Sequence[int]) -> bool:
         """True if faces lie on one surface."""
@@ -263,7 +265,7 @@ class Shell:
     def _cylinder(self, ids: Sequence[int]) -> FoundFeature:
         face = self.faces[ids[0]]
         at, axis, length = self._axis(ids)
-        turn = self._turn(ids, length)
+        turn = self._turn(ids)
         kinds: tuple[FeatureKind, FeatureKind] = ("hole", "pin") if turn > HELD else ("fillet", "round")
         kind = kinds[0] if face.is_hollow else kinds[1]
         return FoundFeature(
@@ -277,12 +279,9 @@ class Shell:
             turn=turn,
         )
 
-    def _turn(self, ids: Sequence[int], length: float) -> float:
+    def _turn(self, ids: Sequence[int]) -> float:
         """Angle about their axis that faces cover together [rad]."""
         first = self.faces[ids[0]]
-        if any(self.faces[number].turn is None for number in ids):
-            area = sum(self.faces[number].area for number in ids)
-            return float(min(2 * math.pi, area / max(first.radius * length, 1e-300)))
         spans: list[tuple[float, float]] = []
         for number in ids:
             face = self.faces[number]
@@ -316,13 +315,10 @@ class Shell:
             round(large, DECIMALS),
             round(small, DECIMALS),
             abs(face.half_angle),
-            self._turn_of_cone(ids),
+            self._turn(ids),
             radii=(round(ends[0], DECIMALS), round(ends[1], DECIMALS)),
             outside=face.is_hollow,
         )
-
-    def _turn_of_cone(self, ids: Sequence[int]) -> float:
-        return self._turn(ids, math.inf) if all(self.faces[own].turn is not None for own in ids) else 2 * math.pi
 
     def _sphere(self, ids: Sequence[int]) -> FoundFeature:
         face = self.faces[ids[0]]
@@ -386,27 +382,29 @@ def _same_surface(first: Face, second: Face, *, turned: bool) -> bool:
         return False
     off = np.subtract(second.at, first.at)
     axis = np.array(first.axis)
+    near = SAME_PLACE + first.deviation + second.deviation
     if first.kind == "sphere":
-        same = float(np.linalg.norm(off)) < SAME_PLACE and abs(first.radius - second.radius) < SAME_PLACE
+        same = float(np.linalg.norm(off)) < near and abs(first.radius - second.radius) < near
         return same and (turned or first.is_hollow == second.is_hollow)
-    if float(np.linalg.norm(np.cross(axis, second.axis))) > SAME_SLOPE:
+    steepest = SAME_SLOPE + (first.deviation + second.deviation) / max(math.sqrt(min(first.area, second.area)), near)
+    if float(np.linalg.norm(np.cross(axis, second.axis))) > steepest:
         return False
     if first.kind == "plane":
-        same = abs(float(off @ axis)) < SAME_PLACE
+        same = abs(float(off @ axis)) < near
         return same and (turned or float(_normal(first) @ _normal(second)) > 0.0)
     across = float(np.linalg.norm(off - off @ axis * axis))
-    if across > SAME_PLACE or (not turned and first.is_hollow != second.is_hollow):
+    if across > near or (not turned and first.is_hollow != second.is_hollow):
         return False
     if first.kind == "cylinder":
-        return abs(first.radius - second.radius) < SAME_PLACE
+        return abs(first.radius - second.radius) < near
     if first.kind == "torus":
         sizes = abs(first.radius - second.radius), abs(first.minor_radius - second.minor_radius), abs(float(off @ axis))
-        return max(sizes) < SAME_PLACE
+        return max(sizes) < near
     way = 1.0 if float(axis @ np.array(second.axis)) > 0.0 else -1.0
     slope, other = math.tan(first.half_angle), way * math.tan(second.half_angle)
-    if abs(slope - other) > SAME_SLOPE:
+    if abs(slope - other) > steepest:
         return False
-    return abs(first.radius + slope * float(off @ axis) - second.radius) < SAME_PLACE
+    return abs(first.radius + slope * float(off @ axis) - second.radius) < near
 
 
 def _one_circle(edges: Sequence[Edge]) -> bool:

@@ -4,14 +4,13 @@ Open CASCADE ends its process on 200 000 brackets in each other and on a coordin
 faces without a word where a reference leads nowhere or a shell holds itself: such files are refused here.
 """
 
-import math
 import re
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 from tol3d.cad.step.refused import StepError, shown
-from tol3d.cad.step.values import DEEPEST, LONGEST_NUMBER
+from tol3d.cad.step.values import DEEPEST
 
 LARGEST_NUMBER: Final = 1e12  # mm would be a million kilometres; no length, angle or area of a part
 LARGEST_PROPERTY: Final = 1e100  # of what is no geometry, such as the time of a file in milliseconds
@@ -19,9 +18,8 @@ PROPERTIES: Final = re.compile(r"[\s(]*+[A-Z_]*(?:REPRESENTATION_ITEM|MEASURE|VI
 
 COVERED = re.compile(r"'(?:[^']|'')*+'|/\*(?:[^*]|\*(?!/))*+\*/|\"[0-9A-Fa-f]*+\"")
 FOREIGN = re.compile(r"[^A-Za-z0-9_#=(),;.$*+\-\s'!]")
-EXPONENT = re.compile(r"[0-9.][eE][-+]?[0-9]++")
+EXPONENT = re.compile(r"(?<![A-Za-z0-9_.#])[0-9]++(?:\.[0-9]*+)?[eE][-+]?[0-9]++")
 LONG = re.compile(r"[(,+\-\s][0-9]{13,}+(?:\.[0-9]*+)?")
-MANTISSA = re.compile(r"[-+]?[0-9]++(?:\.[0-9]*+)?\Z")
 OF_ITSELF: Final = "DIMENSIONAL_SIZE_WITH_DATUM_FEATURE"  # its dimension is that of itself, by ISO 10303-47
 REFERENCE = re.compile(r"#([0-9]++)")
 NO_BRACKETS = re.compile(r"[^()]++")
@@ -66,12 +64,9 @@ def check_characters(bare: str, first: int, place: Place) -> None:
 def check_numbers(bare: str, first: int, bodies: Sequence[tuple[int, int]], place: Place) -> None:
     """Refuse numbers that no part has."""
     written = [(found.start(), found.group()[1:]) for found in LONG.finditer(bare, first)]
-    for found in EXPONENT.finditer(bare, first):
-        mantissa = MANTISSA.search(bare[max(first, found.start() - LONGEST_NUMBER) : found.start() + 1])
-        if mantissa:
-            written.append((found.start(), mantissa.group() + found.group()[1:]))
+    written += [(found.start(), found.group()) for found in EXPONENT.finditer(bare, first)]
     for offset, each in written:
-        size = abs(float(each)) if len(each) <= LONGEST_NUMBER else math.inf
+        size = float(each)
         body = bodies[bisect_right(bodies, (offset, len(bare))) - 1]
         largest = LARGEST_PROPERTY if size > LARGEST_NUMBER and PROPERTIES.match(bare, *body) else LARGEST_NUMBER
         if size > largest:

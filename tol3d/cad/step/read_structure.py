@@ -1,5 +1,6 @@
 """Reading the products of a STEP file from its text; see structure.py for the result."""
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,13 +23,22 @@ from tol3d.cad.step.placement import (
     vector_of,
 )
 from tol3d.cad.step.refused import StepError, shown
-from tol3d.cad.step.structure import Occurrence, Product, Solid, Structure
+from tol3d.cad.step.structure import UNNAMED, Occurrence, Product, Solid, Structure
 from tol3d.cad.step.units import Unit
 from tol3d.cad.step.values import Missing, Reference, Typed, Value
 
 DEFINITIONS: Final = ("PRODUCT_DEFINITION", "PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS")
 USES: Final = ("NEXT_ASSEMBLY_USAGE_OCCURRENCE",)
 SOLIDS: Final = ("MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS", "FACETED_BREP")
+SAYS_NOTHING: Final = re.compile(
+    r"|none|null|unidentified_product|unnamed|untitled|\(?unsaved\)?|no ?name|open cascade step translator.*",
+    re.IGNORECASE,
+)
+"""Names that programs write where a person gave none."""
+USED: Final = re.compile(
+    SAYS_NOTHING.pattern + r"|next assembly (?:usage|relationship).*|nauo ?[0-9]*|=>.*|[0-9]+", re.I
+)
+"""Names of uses that are none of a person."""
 TRANSFORMS: Final = ("CARTESIAN_TRANSFORMATION_OPERATOR_3D",)
 
 
@@ -129,11 +139,12 @@ class StructureReader:
             stack.extend(reversed(fresh))
 
     def product_name(self, definition: int) -> str:
-        """The name of a product, else its number in the parts list."""
+        """The name of a product, else its number in the parts list; words that programs write for none are none."""
         formation = self.file[definition].inherited("PRODUCT_DEFINITION").reference(2)
         made = self.file[formation].inherited("PRODUCT_DEFINITION_FORMATION").reference(2)
         record = self.file[made].needed("PRODUCT")
-        return record.text(1).strip() or record.text(0).strip() or f"product_{definition}"
+        said = (record.text(own).strip() for own in (1, 0))
+        return next((words for words in said if not SAYS_NOTHING.fullmatch(words)), UNNAMED)
 
     def occurrence(self, record: Record, products: dict[int, Product]) -> Occurrence:
         """One use of a product, with its placement."""
@@ -141,9 +152,19 @@ class StructureReader:
         for each in (parent, used):
             if each not in products:
                 raise StepError(f"{record.instance.place}: expected a product definition, got #{each}")
-        name = record.text(1).strip() or products[used].name
+        name = self.use_names.get(record.instance.id) or products[used].name
         placement = self.placement(record, parent, used)
         return Occurrence(record.instance.id, name, parent, used, placement)
+
+    @cached_property
+    def use_names(self) -> dict[int, str]:
+        """Names of uses that say which part it is: one that several products share says nothing."""
+        records = list(self.file.records(USES[0]))
+        names = {record.instance.id: record.text(1).strip() for record in records}
+        shared: dict[str, set[int]] = {}
+        for record in records:
+            shared.setdefault(names[record.instance.id], set()).add(int(record.reference(4)))
+        return {use: name for use, name in names.items() if len(shared[name]) == 1 and not USED.fullmatch(name)}
 
     def placement(self, use: Record, parent: int, used: int) -> Placement:
         """`parent_from_product` of a use.
@@ -186,7 +207,8 @@ class StructureReader:
                     continue
                 seen[own] = seen.get(own, 0) + 1
                 if seen[own] > used.count((parent, own)):
-                    name = item.text(0).strip() or products[own].name
+                    name = item.text(0).strip()
+                    name = products[own].name if SAYS_NOTHING.fullmatch(name) else name
                     yield Occurrence(item.instance.id, name, parent, own, self.map_placement(item, parent))
 
     @cached_property

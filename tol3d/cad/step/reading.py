@@ -33,6 +33,7 @@ from tol3d.cad.step.found_features import FoundFeature, Shell, Triple, cosines_o
 from tol3d.cad.step.outline import Named, named_in, read_step_text
 from tol3d.cad.step.part21 import Part21, read_part21
 from tol3d.cad.step.refused import StepError, shown
+from tol3d.cad.step.structure import UNNAMED
 from tol3d.errors import InputError
 from tol3d.files import FileContent, UnreadableFileError, read_contained
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
@@ -65,6 +66,7 @@ class ReadPart:
         names: of its faces in the file, by their numbers.
         named: items that its drawing names on its faces.
         colours: "#RRGGBB" of its faces that have one, by their numbers.
+        unread: its faces that cannot be read, by their numbers, and why.
     """
 
     body: Body
@@ -72,6 +74,7 @@ class ReadPart:
     names: Mapping[int, str]
     named: tuple[Named, ...]
     colours: Mapping[int, str]
+    unread: Mapping[int, str]
 
 
 @dataclass(frozen=True)
@@ -103,7 +106,13 @@ class ReadFile:
     uses: tuple[Use, ...]
     layers: tuple[str, ...]
 
+    @property
+    def solids(self) -> "Solids":
+        """Every solid by its number, with the numbers of its faces."""
+        return _solids([part.body for part in self.parts])
 
+
+Solids = Sequence[tuple[int, Sequence[int]]]
 READ: Final = TypeAdapter(ReadFile)
 
 
@@ -118,6 +127,7 @@ class StepPart:
         names: of its faces in the file, by their numbers.
         named: items that its drawing names on its faces: datums, tolerances, dimensions.
         colours: "#RRGGBB" of its faces that have one, by their numbers.
+        unread: its faces that cannot be read, by their numbers, and why.
     """
 
     file: "StepFile"
@@ -126,11 +136,16 @@ class StepPart:
     names: Mapping[int, str]
     named: tuple[Named, ...]
     colours: Mapping[int, str]
+    unread: Mapping[int, str]
 
     @property
     def name(self) -> str:
-        """Name of the product in the file."""
-        return self.body.name
+        """Name of the product in the file, or that of the file, numbered, where that says none."""
+        if self.body.name != UNNAMED:
+            return self.body.name
+        unnamed = [part.body.product for part in self.file.read.parts if part.body.name == UNNAMED]
+        stem = self.file.content.path.stem
+        return stem if len(unnamed) == 1 else f"{stem} {unnamed.index(self.body.product) + 1}"
 
     @cached_property
     def shell(self) -> Shell:
@@ -138,12 +153,24 @@ class StepPart:
         return _shell(self.body, self.file.faces)
 
     def mesh(self, deflection: float = DEFLECTION) -> FaceMesh:
-        """Its solids as triangles, with the loose faces beside them.
+        """Its solids as triangles, with the loose faces beside them; without faces that cannot be triangulated.
 
         Raises:
             StepError: they cannot be made.
         """
-        return _mesh(self.file.content, deflection).of_faces(self.body.faces | self.body.loose)
+        return _mesh(self.file.content, deflection, self.file.read.solids).of_faces(self.body.faces | self.body.loose)
+
+    @cached_property
+    def bare(self) -> frozenset[int]:
+        """Its faces without triangles; all of them where Open CASCADE does not live to make any."""
+        try:
+            return self.mesh().bare
+        except StepError:
+            return self.body.faces
+
+    def point_on(self, faces: Sequence[int]) -> Triple:
+        """A point of some of its faces."""
+        return _point_on(faces, self.file.faces, self.mesh())
 
 
 @dataclass(frozen=True)
@@ -177,7 +204,8 @@ class StepFile:
     def parts(self) -> tuple[StepPart, ...]:
         """Its products with geometry of their own, in the order of the file."""
         return tuple(
-            StepPart(self, part.body, part.features, part.names, part.named, part.colours) for part in self.read.parts
+            StepPart(self, part.body, part.features, part.names, part.named, part.colours, part.unread)
+            for part in self.read.parts
         )
 
     def part(self, product: str | None, use: str | None = None) -> StepPart:
@@ -255,12 +283,31 @@ def read_step(content: FileContent) -> StepFile:
         raise StepError(f"{cache_folder()}: a cache entry was changed; delete the folder") from None
 
 
-def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh, named: Sequence[Named]) -> ReadPart:
-    names, colours = names_of(text, body.faces | body.loose), colours_of(text, body)
-    found = (replace(feature, on=mesh.middle(feature.faces)) for feature in _shell(body, faces).features)
-    features = tuple(_described(own, names, colours) for own in found)
+def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh | None, named: Sequence[Named]) -> ReadPart:
     own = body.faces | body.loose
-    return ReadPart(body, features, names, tuple(each for each in named if own & {*each.faces}), colours)
+    names, colours = names_of(text, own), colours_of(text, body)
+    unread = {number: why for number, why in faces.unread if number in own}
+    found = (
+        *(replace(each, on=_point_on(each.faces, faces, mesh)) for each in _shell(body, faces).features),
+        *(_unread(number, loose=number in body.loose) for number in sorted(unread)),
+    )
+    features = tuple(_described(each, names, colours) for each in found)
+    return ReadPart(body, features, names, tuple(each for each in named if own & {*each.faces}), colours, unread)
+
+
+def _unread(face: int, *, loose: bool) -> FoundFeature:
+    """A face that cannot be read, as a feature of which nothing is known."""
+    return FoundFeature((face,), "unread", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), loose=loose)
+
+
+def _point_on(ids: Sequence[int], faces: Faces, mesh: FaceMesh | None) -> Triple:
+    """A point of some faces: of their triangles, or of the surface of the first where they have none."""
+    found = None if mesh is None else mesh.middle(ids)
+    return lengths_of(faces.by_id[ids[0]].place) if found is None else found
+
+
+def _solids(bodies: Sequence[Body]) -> Solids:
+    return [(number, own) for body in bodies for number, own in body.solids.items()]
 
 
 def _described(feature: FoundFeature, names: Mapping[int, str], colours: Mapping[int, str]) -> FoundFeature:
@@ -276,34 +323,45 @@ def _shell(body: Body, faces: Faces) -> Shell:
     return shell_of(faces, [root.id for root in faces.roots if any(face.id in wanted for face in root.faces)])
 
 
-def _geometry(content: FileContent, bodies: Sequence[Body], text: Part21 | None = None) -> tuple[Faces, FaceMesh]:
-    """Faces of a file, read by Open CASCADE and checked against its text, and their triangles for pictures."""
+def _geometry(
+    content: FileContent, bodies: Sequence[Body], text: Part21 | None = None
+) -> tuple[Faces, FaceMesh | None]:
+    """Faces of a file, read by Open CASCADE and checked against its text, and their triangles for pictures.
+
+    The triangles are None where Open CASCADE does not live to make them.
+    """
     made: dict[str, Arrays] = {}
 
     def make() -> Arrays:
         own = text or read_part21(content.content, content.path.name)
-        answer, made["mesh"] = _asked(content, {"with_faces": True, "ids": list(own.spans), "deflection": DEFLECTION})
-        _checked(answer, own, bodies)
-        return {"faces": np.frombuffer(json.dumps(answer).encode(), dtype=np.uint8)}
+        order = {"with_faces": True, "ids": list(own.spans), "solids": _solids(bodies), "deflection": DEFLECTION}
+        answer, made["mesh"] = _asked(content, order)
+        return {"faces": np.frombuffer(_checked(answer, own, bodies).model_dump_json().encode(), dtype=np.uint8)}
 
     arrays = _cached(f"step-faces-{_key(content, {})}.npz", make)
-    return Faces.model_validate_json(arrays["faces"].tobytes()), _mesh(content, DEFLECTION, made.get("mesh"))
+    faces = Faces.model_validate_json(arrays["faces"].tobytes())
+    try:
+        return faces, _mesh(content, DEFLECTION, _solids(bodies), made.get("mesh"))
+    except StepError:
+        return faces, None
 
 
-def _mesh(content: FileContent, deflection: float, made: Arrays | None = None) -> FaceMesh:
+def _mesh(content: FileContent, deflection: float, solids: Solids, made: Arrays | None = None) -> FaceMesh:
     """Triangles of all solids and shells of a file.
 
     Args:
         content: the file.
         deflection: largest distance from the faces [mm].
-        made: existing ones.
+        solids: each with its faces.
+        made: existing ones; empty where they could not be made.
     """
 
     def make() -> Arrays:
         if made is not None:
-            return made
+            return _meshed(made, content)
         text = read_part21(content.content, content.path.name)
-        return _asked(content, {"with_faces": False, "deflection": deflection, "ids": list(text.spans)})[1]
+        order = {"with_faces": False, "deflection": deflection, "ids": list(text.spans), "solids": solids}
+        return _meshed(_asked(content, order)[1], content)
 
     arrays = _cached(f"step-mesh-{_key(content, {'deflection': deflection})}.npz", make)
     try:
@@ -312,31 +370,64 @@ def _mesh(content: FileContent, deflection: float, made: Arrays | None = None) -
         raise StepError(f"{content.path.name}: its triangles cannot be made") from None
 
 
-def _checked(answer: Any, text: Part21, bodies: Sequence[Body], *, deep: bool = True) -> Faces:
-    """Faces from the other process, if they match the text.
+def _meshed(arrays: Arrays, content: FileContent) -> Arrays:
+    """Triangles, if there are any arrays of them.
 
     Raises:
-        StepError: it is none, or has other faces.
+        StepError: there are none: nothing is kept.
+    """
+    if "nodes" not in arrays:
+        raise StepError(f"{content.path.name}: its triangles cannot be made")
+    return arrays
+
+
+def _checked(answer: Any, text: Part21, bodies: Sequence[Body]) -> Faces:
+    """Faces from the other process, if they match the text; those that it does not read are `unread`.
+
+    Raises:
+        StepError: it is no answer, it has other faces, or none of a solid.
     """
     try:
+        unread = _without_bad_faces(answer)
         found = Faces.model_validate_json(json.dumps(answer))
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         place = ".".join(map(str, first["loc"]))
         raise StepError(f"{text.name}: Open CASCADE reads numbers that no part has ({place}: {first['msg']})") from None
     of_solids = {face.id for root in found.roots if root.solid for face in root.faces}
-    for body in bodies:
-        if missing := sorted(body.faces - of_solids):
-            words = f"Open CASCADE reads {len(body.faces) - len(missing)} of {len(body.faces)} faces"
-            raise StepError(f"{text.place(missing[0])}: {words}; mend the solid in the CAD system and export it again")
-    if stray := sorted(of_solids - {face for body in bodies for face in body.faces}):
+    wanted = {face for body in bodies for face in body.faces}
+    if not of_solids & wanted:
+        words = f"Open CASCADE reads 0 of {len(wanted)} faces"
+        raise StepError(f"{text.place(min(wanted))}: {words}; mend the solid in the CAD system and export it again")
+    if stray := sorted(of_solids - wanted):
         raise StepError(f"{text.place(stray[0])}: the solid of this face belongs to no product")
-    if deep:
-        by_id = found.by_id
-        for body in bodies:
-            for number in sorted(body.faces):
-                _check_surface(text, by_id[number], body.unit)
-    return found
+    by_id = found.by_id
+    for body in bodies:
+        for number in sorted(body.faces & of_solids):
+            _check_surface(text, by_id[number], body.unit)
+    told = dict([*((face, "Open CASCADE makes no face of it") for face in wanted - of_solids), *found.unread, *unread])
+    return found.model_copy(update={"unread": tuple(sorted(told.items()))})
+
+
+def _without_bad_faces(answer: Any) -> list[tuple[int, str]]:
+    """Take faces of impossible numbers out of an answer; their numbers in the file, and why."""
+    bad: list[tuple[int, str]] = []
+    roots = answer.get("roots") if isinstance(answer, dict) else None
+    for root in roots if isinstance(roots, list) else ():
+        if not isinstance(root, dict) or not isinstance(root.get("faces"), list):
+            continue  # refused with the whole answer
+        kept = []
+        for face in root["faces"]:
+            try:
+                kept.append(Face.model_validate_json(json.dumps(face)).model_dump())
+            except ValidationError as error:
+                first = error.errors(include_url=False)[0]
+                if not isinstance(face, dict) or not isinstance(face.get("id"), int):
+                    raise
+                place = ".".join(map(str, first["loc"]))
+                bad.append((face["id"], f"Open CASCADE reads numbers that no face has ({place}: {first['msg']})"))
+        root["faces"] = kept
+    return bad
 
 
 def _check_surface(text: Part21, face: Face, unit: float) -> None:
@@ -347,7 +438,7 @@ def _check_surface(text: Part21, face: Face, unit: float) -> None:
     """
     surface = text[text[face.id].needed("ADVANCED_FACE", "FACE_SURFACE").reference(2)]
     record = surface.record("PLANE", "CYLINDRICAL_SURFACE", "SPHERICAL_SURFACE")
-    if record is None or face.turn is None:
+    if record is None:
         return
     placement = text[record.reference(1)].needed("AXIS2_PLACEMENT_3D")
     point = text[placement.reference(1)].needed("CARTESIAN_POINT").numbers(1)
@@ -385,12 +476,12 @@ def _asked(content: FileContent, order: Mapping[str, Any]) -> tuple[Any, Arrays]
                 timeout=2 * seconds, check=False, cwd=folder, env=_environment(),
             )  # fmt: skip
         except subprocess.TimeoutExpired:
-            raise StepError(
-                f"{content.path.name}: Open CASCADE does not read it within {2 * seconds:g} s; {longer}"
-            ) from None
+            why = f"Open CASCADE does not read it within {2 * seconds:g} s; {longer}"
+        else:
+            why = "" if done.returncode == 0 else _ended(done.returncode, done.stderr, longer)
         answer = _answer(folder / "answer.json")
-        if done.returncode != 0 or answer is None:
-            raise StepError(f"{content.path.name}: {_ended(done.returncode, done.stderr, longer)}")
+        if answer is None or (why and not order["with_faces"]):  # faces are written before triangles are tried
+            raise StepError(f"{content.path.name}: {why or _ended(0, b'', longer)}")
         if isinstance(answer, dict) and "refused" in answer:
             raise StepError(
                 f"{content.path.name}: {answer['refused']}; mend the file in the CAD system and export it again"

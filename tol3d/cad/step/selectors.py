@@ -1,5 +1,6 @@
 """Features of a foreign part that a selector means: exactly one, exactly as many as it counts, or none at all."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -156,7 +157,7 @@ def _named(part: StepPart, selector: Selector, field: str) -> list[FoundFeature]
         here = [face for face in faces if face in feature.faces]
         if feature.kind == "plane" and here and len(here) < len(feature.faces):
             exact = part.shell.made_of(here)
-            found.append(replace(exact, names=feature.names, colour=feature.colour, on=part.mesh().middle(here)))
+            found.append(replace(exact, names=feature.names, colour=feature.colour, on=part.point_on(here)))
         elif here or set(faces) & {*feature.repeated}:
             found.append(feature)
     if not found:
@@ -234,7 +235,11 @@ def _nearest(part: StepPart, selector: Selector, fitting: list[FoundFeature]) ->
 
 def distance(mesh: FaceMesh, feature: FoundFeature, point: Array) -> float:
     """Distance of a point (3,) from a feature [mm]: from its faces, of a hole, pin or ball from its axis as well."""
+    if feature.kind == "unread":
+        return math.inf
     found = mesh.distance(point, feature.faces, less_error=feature.kind != "free form")
+    if math.isinf(found):  # it has no triangles
+        found = float(np.linalg.norm(point - np.array(feature.on)))
     if feature.kind in ("hole", "pin", "ball", "socket"):
         found = min(found, feature.axis_distance(point))
     return found

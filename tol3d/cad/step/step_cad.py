@@ -25,7 +25,7 @@ def solid_of(shape: StepShape) -> NamedSolid:
         path = Path(name) / "file.stp"
         path.write_bytes(shape.file.content)
         try:
-            found = Transferred(path, list(text.spans)).solids(set(body.solids))
+            found = Transferred(path, list(text.spans), list(body.solids.items())).solids(set(body.solids))
         except UnreadError as error:
             raise GeometryError(f"{text.name}: {error}") from None
     solids = [cq.Shape.cast(own) for own in found]

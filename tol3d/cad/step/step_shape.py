@@ -55,6 +55,11 @@ class StepShape(MeshedShape):
         own = {face: colour for face, colour in part.colours.items() if colour != usual}
         return [own.get(face, "") for face in mesh.faces.tolist()]
 
+    def open_faces(self) -> Sequence[str]:
+        """See BuiltShape."""
+        part = read_step(self.file).part(self.product, self.use)
+        return [f"#{face}" for face in sorted({*part.unread, *part.bare} & part.body.faces)]
+
     def _shown(self, deflection: float) -> tuple[StepPart, FaceMesh]:
         """The part, and the triangles of its solids without the loose faces beside them."""
         part = read_step(self.file).part(self.product, self.use)

@@ -12,6 +12,8 @@ from typing import Final
 from tol3d.cad.step.placement import IDENTITY, Placement, product
 from tol3d.cad.step.refused import StepError, shown
 
+UNNAMED: Final = "part"
+"""Name of a product whose file says none."""
 MOST_LEAVES: Final = 10_000  # parts in all; sub-assemblies that are used often multiply
 
 
@@ -38,7 +40,7 @@ class Product:
 
     Args:
         id: its product definition.
-        name: its name, or its number if it has none.
+        name: its name, or its number in the parts list; UNNAMED if the file says neither.
         shape: its product definition shape, by which tolerances name it; None if it has none.
         solids: its own solids, without those of the products in it.
         loose_faces: faces of its own that no solid of it has (supplemental geometry).

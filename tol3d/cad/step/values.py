@@ -4,6 +4,7 @@
 Source: ISO 10303-21:2016, clauses 5 and 6.
 """
 
+import math
 import re
 from dataclasses import dataclass
 from enum import Enum
@@ -12,11 +13,13 @@ from typing import Final
 from tol3d.cad.step.refused import StepError, shown
 
 DEEPEST: Final = 64  # brackets in each other; files of CAD systems have at most 8, OCCT ends the process at 200 000
-LONGEST_NUMBER: Final = 40  # characters; 17 digits, sign, point and exponent need 24
+LONGEST_INTEGER: Final = 18  # characters up to which an integer is one; longer ones are read as decimals
 
 
 class Reference(int):
     """The `#id` of another instance."""
+
+    __str__ = int.__repr__
 
     def __repr__(self) -> str:
         return f"#{int(self)}"
@@ -98,10 +101,17 @@ def directive(found: re.Match[str]) -> str:
 
 
 def number(written: str) -> int | float:
-    """A number as written."""
-    if len(written) > LONGEST_NUMBER:
-        raise StepError(f"expected a number of at most {LONGEST_NUMBER} characters, got {shown(written)}")
-    return float(written) if "." in written or "e" in written or "E" in written else int(written)
+    """A number as written, of any length: ISO 10303-21 has no limit.
+
+    Raises:
+        StepError: it is beyond the range of a double.
+    """
+    if len(written) <= LONGEST_INTEGER and not any(sign in written for sign in ".eE"):
+        return int(written)
+    value = float(written)
+    if not math.isfinite(value):
+        raise StepError(f"expected a finite number, got {shown(written)}")
+    return value
 
 
 class Frame:

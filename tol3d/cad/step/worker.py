@@ -28,11 +28,10 @@ from OCP.GeomAbs import (
     GeomAbs_Sphere,
     GeomAbs_Torus,
 )
-from OCP.gp import gp_Cone, gp_Cylinder, gp_Pln, gp_Sphere
+from OCP.gp import gp_Pnt, gp_Vec
 from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
-from OCP.ShapeAnalysis import ShapeAnalysis_CanonicalRecognition
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED, TopAbs_ShapeEnum, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopExp import TopExp
@@ -41,16 +40,19 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from tol3d.cad.step.limits import limit_this_process
+from tol3d.cad.step.recognised import recognised, turned
 
 SAMPLES: Final = 129
 """Places on a curve that is neither a line, a circle nor an ellipse."""
-RECOGNISED: Final = 1e-6
-"""mm; largest distance of a spline from the plane, cylinder, cone or sphere that it is taken for."""
-MOST_RECOGNISED: Final = 200
+GRID: Final = 17
+"""Points of a spline in each direction, by which it is recognised."""
+MOST_RECOGNISED: Final = 2000
 """Largest number of splines of a file that are checked, each of which takes milliseconds."""
 DISPLAY_ANGLE: Final = 0.5
 """rad; coarsest turn between neighbouring facets."""
 FULL_TURN: Final = 2.0 * math.pi
+SINGULAR: Final = 1e-9
+"""Of the largest normal, and mm: below it a direction is rounding, as at the tip of a cone."""
 
 Numbers = list[float]
 
@@ -65,12 +67,13 @@ def main() -> None:
     order = json.loads((folder / "order.json").read_text("utf-8"))
     limit_this_process(order["megabytes"], order["seconds"])
     try:
-        found = Transferred(folder / "file.stp", order["ids"])
+        found = Transferred(folder / "file.stp", order["ids"], order["solids"])
         answer = found.faces() if order["with_faces"] else {}
-        np.savez(folder / "mesh.npz", allow_pickle=False, **found.mesh(order["deflection"]))
     except UnreadError as error:
-        answer = {"refused": str(error)}
-    (folder / "answer.json").write_text(json.dumps(answer, allow_nan=False), "utf-8")
+        (folder / "answer.json").write_text(json.dumps({"refused": str(error)}), "utf-8")
+        return
+    (folder / "answer.json").write_text(json.dumps(answer, allow_nan=False), "utf-8")  # faces live if meshing dies
+    np.savez(folder / "mesh.npz", allow_pickle=False, **found.mesh(order["deflection"]))
 
 
 class Transferred:
@@ -79,9 +82,10 @@ class Transferred:
     Args:
         path: the file.
         ids: of its entities, in the order of the file.
+        solids: the `#id` of each solid, and those of its faces.
     """
 
-    def __init__(self, path: Path, ids: Sequence[int]) -> None:
+    def __init__(self, path: Path, ids: Sequence[int], solids: Sequence[tuple[int, Sequence[int]]]) -> None:
         reader = STEPControl_Reader()
         Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
         if reader.ReadFile(str(path)) != IFSelect_RetDone:
@@ -95,68 +99,92 @@ class Transferred:
         self._transfer = session.TransferReader()
         self._entities = [model.Value(number) for number in range(1, len(ids) + 1)]  # kept: known by their identity
         self._ids = {id(entity): ids[rank] for rank, entity in enumerate(self._entities)}
+        self._solid_of = {face: solid for solid, faces in solids for face in faces}
         self._recognised = 0
         self._known, self._numbers = TopTools_IndexedMapOfShape(), list[int]()
 
     def faces(self) -> dict[str, Any]:
-        """All faces of its solids and of loose shells, each once."""
-        return {"roots": [self._root(number, shape) for number, shape in self._roots.items()]}
+        """All faces of its solids and of loose shells, each once, and those that cannot be read, with the reason."""
+        unread: list[tuple[int, str]] = []
+        roots = [self._root(number, pieces, unread) for number, pieces in self._roots.items()]
+        return {"roots": roots, "unread": unread}
 
     def mesh(self, deflection: float) -> dict[str, Any]:
-        """Triangles of all solids and shells: nodes, corners, the face of each, and the error of each face."""
-        nodes, corners, owners, off, count = [], [], [], [], 0
-        for shape in self._roots.values():
+        """Triangles of all solids and shells: nodes, corners, the face of each, and the error of each face.
+
+        Faces that Open CASCADE cannot triangulate are `bare`.
+        """
+        nodes, corners, owners, off, bare, count = [], [], [], [], list[int](), 0
+        for shape in (piece for pieces in self._roots.values() for piece in pieces):
             BRepMesh_IncrementalMesh(shape, deflection, False, DISPLAY_ANGLE)
-            for face in faces_of(shape):
-                own_nodes, own_corners = triangles_of(face)
+            for face in self._own_faces(shape):
+                if (triangles := triangles_of(face)) is None:
+                    bare.append(self._id_of(face))
+                    continue
+                own_nodes, own_corners = triangles
                 off.append([self._id_of(face), _chord_error(face, own_nodes, own_corners)])
                 nodes.append(own_nodes)
                 corners.append(own_corners + count)
                 owners.append(np.full(len(own_corners), self._id_of(face), dtype=np.int64))
                 count += len(own_nodes)
-        if not nodes:
-            raise UnreadError("it has no solid to show")
         return {
-            "nodes": np.concatenate(nodes),
-            "corners": np.concatenate(corners),
-            "faces": np.concatenate(owners),
-            "off": np.array(off, dtype=np.float64),
+            "nodes": np.concatenate([np.zeros((0, 3)), *nodes]),
+            "corners": np.concatenate([np.zeros((0, 3), dtype=np.int64), *corners]),
+            "faces": np.concatenate([np.zeros(0, dtype=np.int64), *owners]),
+            "off": np.array(off, dtype=np.float64).reshape(-1, 2),
+            "bare": np.array(bare, dtype=np.int64),
         }
 
     def solids(self, wanted: Set[int]) -> list[TopoDS_Shape]:
-        """Its solids with these numbers."""
-        return [shape for number, shape in self._roots.items() if number in wanted]
+        """Its solids with these numbers, each in one piece or several."""
+        return [piece for number, pieces in self._roots.items() if number in wanted for piece in pieces]
 
     @cached_property
-    def _roots(self) -> dict[int, TopoDS_Shape]:
-        """Solids by their `#id`, then shells and faces that are of none, each in the frame of its own product."""
+    def _roots(self) -> dict[int, list[TopoDS_Shape]]:
+        """Solids by their `#id`, then shells and faces that are of none, each in the frame of its own product.
+
+        Open CASCADE parts a solid of several closed shells, and makes shells of what it cannot close: the pieces of a
+        solid are joined by the numbers of their faces.
+        """
         whole = self._reader.OneShape()
-        found: dict[int, TopoDS_Shape] = {}
+        found: dict[int, list[TopoDS_Shape]] = {}
         seen: set[int] = set()
         for kind in (TopAbs_SOLID, TopAbs_SHELL, TopAbs_FACE):
             for placed in shapes_in(whole, kind):
                 shape = placed.Located(TopLoc_Location())  # without where assemblies place it
-                faces = {self._id_of(face) for face in faces_of(shape)}
+                faces = {self._id_of(face) for face in self._own_faces(shape)}
                 if not faces or faces <= seen:
                     continue
                 seen |= faces
-                found[self._id(shape) if kind != TopAbs_FACE else min(faces)] = shape
+                owner = next((self._solid_of[face] for face in sorted(faces) if face in self._solid_of), min(faces))
+                found.setdefault(owner, []).append(shape)
         return found
 
     def _id(self, shape: TopoDS_Shape) -> int:
-        """The `#id` of the entity that a shape was made of."""
+        """The `#id` of the entity that a shape was made of; 0 of a face that Open CASCADE makes of none."""
         entity = self._transfer.EntityFromShapeResult(shape, -1)
-        if entity is None or id(entity) not in self._ids:
-            raise UnreadError("Open CASCADE makes a solid that is not in the file")
-        return self._ids[id(entity)]
+        return self._ids.get(id(entity), 0)
 
-    def _root(self, number: int, shape: TopoDS_Shape) -> dict[str, Any]:
+    def _own_faces(self, shape: TopoDS_Shape) -> Iterator[TopoDS_Face]:
+        """The faces of a shape that are in the file."""
+        return (face for face in faces_of(shape) if self._id_of(face))
+
+    def _root(self, number: int, pieces: Sequence[TopoDS_Shape], unread: list[tuple[int, str]]) -> dict[str, Any]:
         edges = TopTools_IndexedMapOfShape()
-        TopExp.MapShapes_s(shape, TopAbs_EDGE, edges)
+        for piece in pieces:
+            TopExp.MapShapes_s(piece, TopAbs_EDGE, edges)
+        faces = []
+        for face in (face for piece in pieces for face in self._own_faces(piece)):
+            try:
+                made = self._face(face, edges)
+                json.dumps(made, allow_nan=False)
+                faces.append(made)
+            except Exception as error:
+                unread.append((self._id_of(face), f"Open CASCADE fails on it ({type(error).__name__})"))
         return {
             "id": number,
-            "solid": shape.ShapeType() == TopAbs_SOLID,
-            "faces": [self._face(face, edges) for face in faces_of(shape)],
+            "solid": number in self._solid_of.values(),
+            "faces": faces,
             "edges": [edge_of(TopoDS.Edge_s(edges.FindKey(k))) for k in range(1, edges.Extent() + 1)],
         }
 
@@ -180,7 +208,7 @@ class Transferred:
             "id": self._id_of(face),
             "kind": kind,
             **numbers,
-            "area": properties.Mass(),
+            "area": abs(properties.Mass()),
             "centre": _xyz(properties.CentreOfMass()),
             "place": place,
             "normal": normal,
@@ -208,21 +236,45 @@ class Transferred:
         return self._recognise(face, surface)
 
     def _recognise(self, face: TopoDS_Face, surface: BRepAdaptor_Surface) -> tuple[str, dict[str, Any]]:
-        """The plane, cylinder, cone or sphere that a spline or swept face is, if it is one."""
+        """The plane, cylinder, cone, sphere or torus that a spline or swept face is, if it is one."""
         self._recognised += 1
-        if self._recognised <= MOST_RECOGNISED:
-            asked = ShapeAnalysis_CanonicalRecognition(face)
-            plane, cylinder, cone, sphere = gp_Pln(), gp_Cylinder(), gp_Cone(), gp_Sphere()
-            if asked.IsPlane(RECOGNISED, plane):
-                return "plane", _placed(plane, None)
-            if asked.IsCylinder(RECOGNISED, cylinder):
-                return "cylinder", {**_placed(cylinder, None), "radius": cylinder.Radius()}
-            if asked.IsCone(RECOGNISED, cone):
-                numbers = {"radius": cone.RefRadius(), "half_angle": cone.SemiAngle()}
-                return "cone", {**_placed(cone, None), **numbers}
-            if asked.IsSphere(RECOGNISED, sphere):
-                return "sphere", {**_placed(sphere, None), "radius": sphere.Radius()}
-        return "free form", {}
+        if self._recognised > MOST_RECOGNISED:
+            return "free form", {}
+        points, normals = _grid(surface, BRepTools.UVBounds_s(face))
+        sizes = np.linalg.norm(normals, axis=2)
+        whole = sizes > SINGULAR * max(float(sizes.max()), 1e-300)
+        found = recognised(points[whole], normals[whole] / sizes[whole][:, None])
+        if found is None:
+            return "free form", {}
+        off = points[0, 0] - found.at
+        x = off - off @ found.axis * found.axis
+        if np.linalg.norm(x) < SINGULAR:
+            x = np.cross(found.axis, np.eye(3)[int(np.argmin(np.abs(found.axis)))])
+        x = x / np.linalg.norm(x)
+        return found.kind, {
+            "at": found.at.tolist(),
+            "axis": found.axis.tolist(),
+            "x": x.tolist(),
+            "y": np.cross(found.axis, x).tolist(),
+            "turn": [0.0, FULL_TURN] if found.kind == "plane" else [*turned(points, found.at, found.axis, x)],
+            "radius": found.radius,
+            "half_angle": found.half_angle,
+            "minor_radius": found.minor_radius,
+            "deviation": found.deviation,
+        }
+
+
+def _grid(surface: BRepAdaptor_Surface, bounds: Sequence[float]) -> tuple[Any, Any]:
+    """Points [mm] of a surface within bounds of its parameters, and normals there, not of length 1 (GRID, GRID, 3)."""
+    first, last, low, high = bounds
+    found = []
+    for u in np.linspace(first, last, GRID).tolist():
+        for v in np.linspace(low, high, GRID).tolist():
+            place, along, across = gp_Pnt(), gp_Vec(), gp_Vec()
+            surface.D1(u, v, place, along, across)
+            found.append([_xyz(place), _xyz(along.Crossed(across))])
+    own = np.array(found).reshape(GRID, GRID, 2, 3)
+    return own[:, :, 0], own[:, :, 1]
 
 
 def shapes_in(shape: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> Iterator[TopoDS_Shape]:
@@ -262,12 +314,12 @@ def edge_of(edge: TopoDS_Edge) -> dict[str, Any]:
     return {"kind": "curve", "points": [_xyz(curve.Value(place)) for place in places]}
 
 
-def triangles_of(face: TopoDS_Face) -> tuple[Any, Any]:
-    """Nodes (n, 3) [mm] and triangles (m, 3), turned out of the solid, of a face that is triangulated."""
+def triangles_of(face: TopoDS_Face) -> tuple[Any, Any] | None:
+    """Nodes (n, 3) [mm] and triangles (m, 3), turned out of the solid, of a face; None if it is not triangulated."""
     location = TopLoc_Location()
     mesh = BRep_Tool.Triangulation_s(face, location)
     if mesh is None:
-        raise UnreadError("Open CASCADE cannot triangulate one of its faces")
+        return None
     placed = location.Transformation()
     nodes = np.array([_xyz(mesh.Node(k).Transformed(placed)) for k in range(1, mesh.NbNodes() + 1)])
     corners = np.array([mesh.Triangle(k).Get() for k in range(1, mesh.NbTriangles() + 1)], dtype=np.int64) - 1

@@ -1,0 +1,59 @@
+"""Slots of plain solids, and covers on two dowels: by CadQuery's own export, numbers known beforehand."""
+
+from pathlib import Path
+
+import cadquery as cq
+import pytest
+import yaml
+from deviations import deviating
+from foreign_parts import solid, step_file, turned
+
+from tol3d.apps.drafting import scene_from
+from tol3d.apps.drafting.slots import slots
+from tol3d.cad.step.reading import read_step
+from tol3d.files import FileContent
+
+DOWELS = ((-22.0, 4.0), (27.0, 4.0))
+
+
+def dowelled(folder: Path, pin: float, width: float) -> FileContent:
+    """A base 80 × 50 × 20 with two dowels of one diameter, and a cover 70 × 40 × 6 with a hole ⌀6.05 and a slot."""
+    base = cq.Workplane().box(80, 50, 20).translate((3, 2, -10))
+    base = base.union(cq.Workplane().pushPoints(DOWELS).circle(pin / 2).extrude(5))
+    cover = cq.Workplane().box(70, 40, 6).translate((2, 3, 3))
+    cover = cover.cut(cq.Workplane().pushPoints(DOWELS[:1]).circle(6.05 / 2).extrude(6))
+    cover = cover.cut(cq.Workplane().pushPoints(DOWELS[1:]).slot2D(width + 5, width).extrude(6))
+    return step_file({"cover": solid(cover), "base": solid(base)}, folder / "dowelled.step")
+
+
+def test_a_slot_is_two_half_rounds_and_the_walls_between_them(tmp_path: Path) -> None:
+    """A slot 8 mm wide and 20 mm long through 9 mm, askew; pockets with four rounded corners are none."""
+    plate = cq.Workplane().box(60, 40, 9).faces(">Z").workplane(origin=(5, -3, 0)).slot2D(20, 8, 25).cutThruAll()
+    pocket = cq.Workplane().box(14, 9, 9).edges("|Z").fillet(2).translate((-18, 9, 0))
+    content = step_file({"plate": turned(solid(plate.cut(pocket)))}, tmp_path / "plate.step")
+    (found,) = slots(read_step(content).part(None))
+    assert found.width == pytest.approx(8.0, abs=1e-9)
+    assert [wall.area for wall in found.walls] == pytest.approx([108.0, 108.0], abs=1e-9)
+    assert {wall.kind for wall in found.walls} == {"plane"}
+
+
+def test_a_cover_on_two_dowels_has_a_hole_and_a_slot_with_their_pins(tmp_path: Path) -> None:
+    """Both pairs, the slot's width, and zones that leave half of the play of 0.05 and 0.1 mm."""
+    text, _ = scene_from([dowelled(tmp_path, 6.0, 6.1)])
+    scene = yaml.safe_load(text)
+    (move,) = (own for own in scene["moves"].values() if own["kind"] != "fix")
+    assert move["kind"] == "pattern"
+    ends = {tuple(own.split(".")[1].split()[0] for own in pair.values()) for pair in move["pairs"]}
+    assert ends == {("hole", "pin"), ("slot", "pin")}
+    (slot,) = (own for own in scene["parts"]["cover"]["features"].values() if own["kind"] == "slot")
+    assert slot["width"] == "6.1 mm"
+    zones = {own["of"].split(".")[1].split()[0]: own["zone"] for own in scene["tolerances"].values() if "zone" in own}
+    assert zones["slot"] == {"width": "0.025 mm"}
+    assert float(zones["hole"]["diameter"].split()[0]) == pytest.approx(0.0125, abs=0.0006)
+    assert scene["measures"]
+    assert min(deviating(text, tmp_path).values()) > 1e-6
+
+
+def test_a_pin_beside_a_slot_or_thicker_than_it_is_no_pair(tmp_path: Path) -> None:
+    scene = yaml.safe_load(scene_from([dowelled(tmp_path, 6.0, 5.5)])[0])
+    assert not [own for own in scene["parts"]["cover"]["features"].values() if own["kind"] == "slot"]
