@@ -446,7 +446,8 @@ def test_limits_are_kept_in_their_line(text: str, before: str, after: str) -> No
     [
         ("play=50 um", "expected limits such as 10 um..40 um"),
         ("play=..", "expected limits such as 10 um..40 um"),
-        ("play=50..60 um", "a bare number without its unit"),
+        ("play=50..60 um", "expected a length with its unit, such as \"4.5 um\", or none, got '50', a bare number"),
+        ("play=wide..", "or none, got 'wide'"),
         ("play=5 deg..", "expected a length with its unit"),
         ("play=", "expected MEASURE=LOW..HIGH"),
         ("plai=5 um..", "got 'plai'; did you mean"),

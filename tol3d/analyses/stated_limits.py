@@ -71,6 +71,7 @@ def _stated(measure: Measure, value: str, sides: Sequence[str]) -> Mapping[str, 
         InputError, ValueError: they cannot be.
     """
     found: dict[str, Quantity | None] = {}
+    dimension = UNITS[measure.unit]
     pair = limits_written(value)
     if pair is not None:
         found = dict(zip(FIELDS, pair, strict=True))
@@ -78,12 +79,14 @@ def _stated(measure: Measure, value: str, sides: Sequence[str]) -> Mapping[str, 
         low, dots, high = (own.strip() for own in value.partition(".."))
         if not dots or not (low or high):
             raise ValueError(f"expected limits such as {EXAMPLES}, got {value!r}")
-        found = {
-            field: None if own == NONE else Quantity.parse(own)
-            for field, own in zip(FIELDS, (low, high), strict=True)
-            if own
-        }
-    dimension = UNITS[measure.unit]
+        try:
+            found = {
+                field: None if own == NONE else Quantity.parse(own)
+                for field, own in zip(FIELDS, (low, high), strict=True)
+                if own
+            }
+        except ValueError as error:
+            raise ValueError(f"expected {expectation(dimension)}, or {NONE}, {error}") from None
     for field, quantity in found.items():
         if quantity is not None and quantity.dimension != dimension:
             raise ValueError(f"expected {expectation(dimension)}, got {quantity}")

@@ -137,7 +137,7 @@ def build_view(
     elif not world and worlds:
         world = max(worlds, key=lambda own: len(own.bodies)).name
     model = kept[world].kept() if world in kept else ViewModel(wanted=world)
-    model.add(NOMINAL, [(1.0, nominal, _words(nominal))], _values(build))
+    model.add(NOMINAL, [(1.0, nominal, _words(NOMINAL, nominal))], _values(build))
     for name, row in rows.items():
         trials = _trials(rest, row.deviations, row.positions if at is None else at)
         try:
@@ -168,11 +168,11 @@ def _displays(build: Replay, name: str, words: str, factors: Sequence[float]) ->
             if factor == factors[0]:
                 raise
             return
-        yield factor, display, words + _words(display)
+        yield factor, display, words + _words(name, display)
 
 
-def _words(display: Display) -> str:
-    return "; ".join((display.label, *display.notes))
+def _words(name: str, display: Display) -> str:
+    return "; ".join((name, *display.notes))
 
 
 def _values(build: Replay) -> Mapping[str, str]:

@@ -37,8 +37,12 @@ export async function open(name) {
   problems(found.problems, found.warnings ?? []);
   $("title").textContent = found.title ?? name;
   document.title = `${found.title ?? name} · tol3d`;
-  document.body.classList.toggle("broken", !found.measures);
-  if (!found.measures) {
+  const broken = !found.measures;
+  document.body.classList.toggle("broken", broken); // what was computed before stays in sight, out of reach
+  for (const name of ["card", "stage"]) $(name).inert = broken;
+  $("analyses-button").disabled = broken;
+  $("run").disabled = app.readOnly || broken;
+  if (broken) {
     $("state").textContent = "the scene cannot be read: mend its text";
     $("tree").replaceChildren();
     return;
@@ -111,6 +115,7 @@ $("aside").addEventListener("click", async () => {
   note();
   $("aside").disabled = app.beside.length >= 3;
   await aside();
+  $("beside").scrollIntoView({ block: "nearest" }); // it lies below the sliders
 });
 $("help-button").addEventListener("click", () => $("help").showModal());
 $("close-help").addEventListener("click", () => $("help").close());
@@ -130,6 +135,7 @@ $("tree").addEventListener("click", (event) => {
 document.addEventListener("keydown", (event) => {
   const typing = event.target.closest("#editor, input[type=text], input[type=search]");
   if ((event.ctrlKey || event.metaKey) && event.key === "s") {
+    if (event.defaultPrevented) return; // the editor has saved
     event.preventDefault();
     (event.target.closest("#editor") ? save : keep)();
   } else if ((event.ctrlKey || event.metaKey) && event.key === "z" && !typing) {

@@ -111,6 +111,7 @@ $("limits").addEventListener("change", async () => {
   const key = `limits: ${app.measure}`, now = { ...app.now };
   const stated = LIMITS.map((name) => {
     const text = $(name).value.trim();
+    if (!text) $(name).value = $(name).dataset.scene;
     return text === $(name).dataset.scene ? "" : text;
   });
   delete now[key];
@@ -144,7 +145,7 @@ export async function aside() {
     words.textContent = Object.entries(own)
       .map(([line, text]) => `${line.replace(/^limits: /, "limits of ")} ${signed(text.replace(/^x/, "× "))}`).join(", ");
     const back = button("take", () => takeBack(k)), drop = button("drop", () => dropOne(k));
-    article.append(words, back, " ", drop);
+    article.prepend(words, back, " ", drop);
     found.push(article);
   }
   if (wish === app.wish || !found.length) $("beside").replaceChildren(...found);

@@ -1,7 +1,7 @@
 // Jobs of the scene: the newest in the header, all of them and finished runs in a dialog; reports and answers.
 import { $, app, ask, button, trouble } from "./ask.js";
 
-const STOPPED = ["cancelled", "interrupted", "failed"], LONGEST = 120; // signs of a message in the header
+const STOPPED = ["cancelled", "interrupted", "failed"], LONGEST = 40; // signs of a message in the header, a line of it
 const KINDS = { what_if: "what if", changes: "what to change", rare: "rare events" };
 const links = new Map(); // addresses of reports that are made, each opens once
 let watched = ""; // the analysis that was asked in the open dialog
@@ -53,6 +53,7 @@ function told(job, longest = Infinity) {
   const words = document.createElement("span"), more = job.state === "running" ? job.words : job.message;
   const share = job.of ? ` ${job.done} of ${job.of} trials` : "";
   words.textContent = `${title(job)} ${job.state}${share}${more ? `: ${more.length > longest ? `${more.slice(0, longest)}…` : more}` : ""}`;
+  if (more && more.length > longest) words.title = more;
   words.dataset.job = job.id; // another job with the same words is another one
   const bar = document.createElement("progress");
   Object.assign(bar, { max: job.of, value: job.done, ariaLabel: `${title(job)}: trials` });

@@ -85,6 +85,7 @@ $("sliders").addEventListener("change", async (event) => {
     return;
   }
   const now = moved(line, own.value.trim() || null);
+  if (!own.value.trim()) own.value = own.dataset.scene;
   try {
     await ask("estimate", { now });
   } catch (error) {

@@ -42,6 +42,7 @@ export function problems(wrong, warnings) {
     item.append(line ? button(message, () => editor.go(line)) : message);
     return item;
   }));
+  $("wrong").textContent = wrong.length ? `${wrong.length} error${wrong.length > 1 ? "s" : ""}, below the text` : "";
   marks(wrong);
 }
 
