@@ -142,13 +142,13 @@ CHANGES = {
     ),
     "missing part": (
         ("driver: pinion", "driver: pinon"),
-        "moves.gear pair.driver: expected the name of a spur gear or an internal gear, "
+        "moves.gear pair.driver: expected the name of a spur gear or a helical gear or an internal gear, "
         "got 'pinon', which is not in the scene; "
         'did you mean "pinion"?',
     ),
     "a mesh in place of a gear": (
         ("driver: pinion", "driver: gear pair"),
-        "moves.gear pair.driver: expected the name of a spur gear or an internal gear, "
+        "moves.gear pair.driver: expected the name of a spur gear or a helical gear or an internal gear, "
         "got 'gear pair', which is a mesh of spur gears",
     ),
     "a gear that drives itself": (

@@ -36,7 +36,7 @@ def written_at(text: str, problem: Problem) -> str:
         ("module: 2.5 mm", "modul: 2.5 mm", "parts.pinion.modul", "modul", "", ""),
         ("kind: spur_gear", "kind: spur_gaer", "parts.pinion.kind", "kind: spur_gaer", "a kind of part", "'spur_gaer'"),
         ("driver: pinion", "driver: 'a; b, got c'", "moves.gear pair.driver", "driver:",
-         "the name of a spur gear or an internal gear", "'a; b, got c', which is not in the scene"),
+         "the name of a spur gear or a helical gear or an internal gear", "'a; b, got c', which is not in the scene"),
         ("upper: 20 um", "upper: -21 um", "tolerances.centre distance.distribution.lower", "lower:",
          "less than upper (-21 um)", "'-20 um'"),
         ("teeth: 28", "teeth: 28, teeth: 29", "parts.pinion.teeth", "teeth: 29", "", ""),

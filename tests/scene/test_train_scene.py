@@ -251,7 +251,7 @@ CHANGES = {
     ),
     "a mesh of shafts": (
         ("driver: pinion", "driver: reducer output"),
-        "moves.spur pair.driver: expected the name of a spur gear or an internal gear, "
+        "moves.spur pair.driver: expected the name of a spur gear or a helical gear or an internal gear, "
         "got 'reducer output', which is a shaft",
     ),
     "azimuth without unit": (

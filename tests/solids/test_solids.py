@@ -309,7 +309,9 @@ def test_what_is_kept_is_read_back_bit_for_bit_without_building(
 def test_every_field_of_a_gear_is_in_the_key(own_cache: Path, field: dataclasses.Field[Any]) -> None:
     value = getattr(SMALL, field.name)
     # a last-bit change counts; None becomes what it stands for, another description all the same
-    changed = value + 1 if field.name == "teeth" else math.nextafter(0.38 if value is None else value, math.inf)
+    changed = math.nextafter(0.38 if value is None else value, math.inf)
+    if field.name in ("teeth", "hand"):
+        changed = {"teeth": value + 1, "hand": -value}[field.name]
     other = dataclasses.replace(SMALL, **{field.name: cast(Any, changed)})
     built: list[SpurGear] = []
 

@@ -82,7 +82,7 @@ def scaled(name: str, factor: float) -> Callable[..., Any]:
     def make(right: Callable[..., Any]) -> Callable[..., Any]:
         def wrong(self: Stack[Any], deviations: np.ndarray, driver_angle: np.ndarray, *turns: Any) -> np.ndarray:
             other = deviations.copy()
-            other[:, self.model.component_slices[name]] *= factor
+            other[:, self.model.component_slices.get(name, [])] *= factor  # the table of backlash leaves some out
             return right(self, other, driver_angle, *turns)
 
         return wrong

@@ -166,7 +166,7 @@ def test_an_answer_is_shown_as_its_command_and_the_report_show_it(folder: Path) 
     assert len(figures) == sum(len(row) for row in found.charts().rows) > 0
     assert questions.numbers({"id": "0001"}).read_text("utf-8") == found.csv()
     with pytest.raises(InputError, match="expected a finished analysis"):
-        questions.numbers({"id": left(folder, 2).order().job})  # type: ignore[union-attr]
+        questions.numbers({"id": left(folder, 2).place.name})
     (questions.numbers({"id": "0001"}).with_name("answer.json")).write_text("{}")
     with pytest.raises(RunError, match="it is damaged"):
         questions.answer({"id": "0001"})

@@ -93,7 +93,7 @@ class CylindricalGear(ToothedGear):
     @property
     def lead(self) -> float:
         """p_z = pi d/tan beta [mm]; inf of a spur gear."""
-        return 2 * math.pi / abs(self.twist) if self.helix_angle else math.inf
+        return 2 * math.pi / abs(self.twist) if self.twist else math.inf
 
     # circles ----------------------------------------------------------------------------------
 
