@@ -270,6 +270,50 @@ def test_reset_aside_and_a_reload(app: App) -> None:
     assert app.page.told == []
 
 
+@pytest.mark.parametrize("width", [1400, 390])
+def test_three_what_ifs_can_be_read_and_a_move_leaves_the_sliders_where_they_are(app: App, width: int) -> None:
+    app.load(width)
+    top = f"document.querySelector({SLIDER!r}).closest('#moves').getBoundingClientRect().y"
+    before = app.page.ask(top)
+    for count, step in enumerate((10, 20, 30), 1):
+        app.told(SLIDER, "change", step)
+        app.solid({CENTRE: f"x{float(f'{1.01**step:.4g}')}"})
+        if width == 1400:
+            assert app.page.ask(top) == before
+        app.click("aside")
+        app.page.wait(f"document.querySelectorAll('#beside article').length === {count}")
+    outside = """[...document.querySelectorAll("#beside :is(th, td, button)")].filter((own) => {
+      const inner = own.getBoundingClientRect(), outer = own.closest("article").getBoundingClientRect();
+      return inner.right > outer.right || own.scrollWidth > own.clientWidth + 1;
+    }).map((own) => own.textContent)"""
+    assert app.page.ask(outside) == []
+
+
+def test_a_limit_that_is_emptied_shows_at_once_that_of_the_scene(app: App) -> None:
+    app.load()
+    app.focus("#lower_limit")
+    app.told("#lower_limit", "change", "")
+    assert app.page.ask("document.querySelector('#lower_limit').value") == "15 µm"
+
+
+def test_a_text_is_saved_once_and_while_it_cannot_be_read_there_is_nothing_to_press(app: App) -> None:
+    app.load()
+    line = 1 + TEXT[: TEXT.index("of: gear pair")].count("\n")
+    for saves, text in enumerate(("    of: gear par", "    of: gear pair"), 1):
+        app.focus("#editor .cm-content")
+        app.page.ask(f"tol3dApp.editor.go({line})")
+        app.page.call("Input.insertText", text=text)
+        app.key("s", control=True)
+        broken = "true" if saves == 1 else "false"
+        app.page.wait(
+            f"document.querySelector('#run').disabled === {broken} && tol3dApp.editor.text() === tol3dApp.app.saved"
+        )
+        assert app.page.ask("document.querySelector('#card').inert") is (saves == 1)
+        assert len([url for url in app.page.asked if url.endswith("/api/save")]) == saves
+    app.shown()
+    assert app.page.told == []
+
+
 def test_a_wrong_word_is_marked_at_its_line_and_in_the_tree(app: App) -> None:
     app.load()
     line = 1 + TEXT[: TEXT.index("of: gear pair")].count("\n")
@@ -466,6 +510,7 @@ def test_who_sees_or_moves_little_can_use_it(app: App) -> None:
     ) == [
         "state",
         "result",
+        "analysis-state",
     ]
     for step in (10, 20, 30):
         app.told(SLIDER, "input", step)
