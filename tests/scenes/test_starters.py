@@ -82,6 +82,11 @@ def test_a_file_that_is_there_stays_without_force(here: Path) -> None:
     ("words", "said"),
     [
         (["bevle_pair"], "expected a kind of system, got 'bevle_pair'; did you mean \"bevel_pair\"?"),
+        (
+            ["door"],
+            "expected a kind of system, got 'door'; known here: bevel_pair, internal_pair, spur_pair, train, assembly, "
+            "machine, linkage, planetary, rv_reducer; `tol3d scenes --copy door` copies the bundled scene of this name",
+        ),
         (["gearing"], "gearing: expected one starter scene, found 4: bevel_pair, internal_pair, spur_pair, train"),
         (["--out", "a.yaml"], "--out: expected a kind of system before it; `tol3d new` lists them"),
         (["linkage", "--out", "."], ".: expected a file, this is a folder; --out names another"),

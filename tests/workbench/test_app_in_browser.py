@@ -416,6 +416,7 @@ def test_a_feature_that_is_clicked_is_found_in_tree_and_text_and_a_tolerance_lig
     assert feature in ("body.striker", "door.striker"), "they touch"
     assert DOOR.splitlines()[line - 1].strip().startswith("striker:")
     assert app.page.ask("document.querySelector('.cm-activeLine').textContent").strip().startswith("striker:")
+    assert app.page.ask("document.querySelector('#middle').scrollTop") < 300, "the assembly stays in sight"
     colours = "new Set([...document.querySelectorAll('#parts input')].map((own) => own.dataset.part)).size"
     assert app.page.ask(colours) == 2
     plain = app.page.picture("#stage .stage")
@@ -424,6 +425,22 @@ def test_a_feature_that_is_clicked_is_found_in_tree_and_text_and_a_tolerance_lig
     blue = [float((own[..., 2] > own[..., 0] + 60).mean()) for own in (plain, lit)]
     assert 0.0 < blue[1] < blue[0], "the striker alone is in colour"
     assert app.page.told == []
+
+
+def test_a_scene_that_cannot_be_read_shows_its_text_and_nothing_of_the_one_before(app: App) -> None:
+    app.load()
+    (app.file.parent / "broken.yaml").write_text("scene: broken\nparts: {}\n", "utf-8")
+    app.page.wait("[...document.querySelector('#scene').options].some((own) => own.value === 'broken.yaml')")
+    app.told("#scene", "change", "other.yaml")
+    app.told("#scene", "change", "broken.yaml")
+    app.page.wait("document.querySelector('#problems .error') !== null")
+    shown = "['#card', '#stage', '#editor'].map((own) => document.querySelector(own).checkVisibility())"
+    assert app.page.ask(shown) == [False, False, True]
+    assert app.now() == {}
+    app.told("#scene", "change", SCENE)
+    app.page.wait(f"{shown}.every((own) => own)")
+    app.solid({})
+    (app.file.parent / "broken.yaml").unlink()
 
 
 def test_what_another_program_writes_is_shown(app: App) -> None:
@@ -435,8 +452,10 @@ def test_what_another_program_writes_is_shown(app: App) -> None:
 def test_no_sideways_scroll_and_no_faint_text_at_any_width(app: App) -> None:
     app.load()
     app.focus(SLIDER)
-    app.key("ArrowRight")
-    app.click("aside")
+    for number in (1, 2, 3):
+        app.key("ArrowRight")
+        app.click("aside")
+        app.page.wait(f"document.querySelectorAll('#beside article td').length >= {number} * 4")
     for width in (1400, 1024, 768, 390, 320):
         size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
         app.page.call("Emulation.setDeviceMetricsOverride", **size)

@@ -139,6 +139,12 @@ def test_fields_are_arguments_as_commands_take_them() -> None:
         ("changes", {"accept": "1", "accept_ppk": "1"}, "accept_ppk", "leave out one of the two"),
         ("allocate", {"ppk": "-1"}, "ppk", "expected a number above 0, such as 1.33, got -1"),
         ("allocate", {"cost": "/etc/passwd"}, "cost", ""),
+        (
+            "what_if",
+            {"set": {"play": ""}},
+            "",
+            "expected a new value of a tolerance or other limits of a measure, got none",
+        ),
     ],
 )
 def test_an_unfit_field_is_named_with_a_sentence(

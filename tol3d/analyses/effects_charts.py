@@ -16,7 +16,8 @@ def effects_chart(found: Effects) -> Chart:
         for name, its in changes.items()
     }
     title = f"{found.scene}   ·   change over the whole tolerance"
-    return matrix(percents, title, "in % of the sum of the changes by all contributors")
+    words = "change over the whole tolerance, in % of the sum of the changes by all contributors"
+    return matrix(percents, title, words, what="changes over the whole tolerances")
 
 
 def effects_charts(found: Effects) -> Charts:

@@ -93,7 +93,9 @@ def run_matrix(summary: RunSummary) -> Chart:
     return matrix(shares_in(summary), f"{summary.scene}   ·   share of the variance [%], {word}", worst_of=len(every))
 
 
-def matrix(shares: Shares, title: str, words: str = "", worst_of: int = 0) -> Chart:
+def matrix(
+    shares: Shares, title: str, words: str = "", worst_of: int = 0, what: str = "shares of the variance"
+) -> Chart:
     """A row a contributor, a column a measure, each share [%] as a colour and a number.
 
     Args:
@@ -101,6 +103,7 @@ def matrix(shares: Shares, title: str, words: str = "", worst_of: int = 0) -> Ch
         title: above it.
         words: below the title.
         worst_of: number of a run's measures of which these are the worst; 0 where they are all there are.
+        what: the numbers are, told to who does not see them.
     """
     names = [*shares][:MOST_COLUMNS]
     acting = list(dict.fromkeys(contributor for name in names for contributor in shares[name]))
@@ -122,7 +125,7 @@ def matrix(shares: Shares, title: str, words: str = "", worst_of: int = 0) -> Ch
         kept = "; all in contributors.csv" if worst_of else ""
         head.append(f"the {len(shown)} largest of {len(acting)} contributors{kept}")
     return Chart(
-        "shares of the variance of contributors in measures",
+        f"{what} of contributors in measures",
         Names(names),
         [Panel(Names(labels), [Cells(np.array(rows).reshape(len(rows), len(names)), len(shown))])],
         title,

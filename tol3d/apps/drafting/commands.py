@@ -42,6 +42,7 @@ def new(
     """Write a scene to start your own from, which runs: of a kind of system, or of files; alone list the kinds."""
     from tol3d.errors import InputError
     from tol3d.kinds import all_mechanisms
+    from tol3d.scene.bundled import bundled_scenes
     from tol3d.study.system import starter_lines, starter_named
 
     words = system or []
@@ -61,7 +62,12 @@ def new(
         return
     if len(words) > 1:
         raise InputError(f"expected one kind of system, got {len(words)}; files stand behind --from")
-    starter = starter_named(words[0], all_mechanisms())
+    try:
+        starter = starter_named(words[0], all_mechanisms())
+    except InputError as error:
+        if words[0] not in bundled_scenes():
+            raise
+        raise InputError(f"{error}; `tol3d scenes --copy {words[0]}` copies the bundled scene of this name") from None
     _write(out or Path(f"{starter.name}.yaml"), starter.text, force)
 
 

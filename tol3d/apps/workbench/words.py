@@ -176,6 +176,7 @@ def words_of(kind: str, fields: Mapping[str, object]) -> dict[str, Any]:
 
     Raises:
         InputError: as `refuse_unfit`.
+        UnfitError: a what-if without any change too.
     """
     known, found = WORDS.get(kind, {}), dict[str, Any]()
     for name, value in fields.items():
@@ -190,4 +191,7 @@ def words_of(kind: str, fields: Mapping[str, object]) -> dict[str, Any]:
         sizes = {name: own for name, own in values.items() if name not in factors}
         found |= {key: own for key, own in (("set", sizes), ("factor", factors)) if own}
     refuse_unfit(kind, found)
+    if kind == "what_if" and not found.keys() & {"set", "factor", "limits"}:
+        sentence = "expected a new value of a tolerance or other limits of a measure, got none"
+        raise UnfitError(f"{kind}: {sentence}", "", sentence)
     return found

@@ -60,8 +60,10 @@ def figure(chart: Chart, *behind: Markup, note: str = "", **attributes: object) 
 
 
 def illustrated(page: Page, charts: Charts) -> Markup:
-    """A page with its charts below it."""
-    return together(page_blocks(page.blocks), *(figure(own) for row in charts.rows for own in row))
+    """A page with its charts below it; a matrix says below what its numbers are."""
+    every = (own for row in charts.rows for own in row)
+    noted = (figure(own, note=own.words if isinstance(own.x, Names) else "") for own in every)
+    return together(page_blocks(page.blocks), *noted)
 
 
 def svg(chart: Chart, frame: Frame) -> Markup:

@@ -5,13 +5,13 @@ import "./analyses.js";
 import "./jobs.js";
 import { note, slide, take, undo } from "./sliders.js";
 import "./stage.js";
-import { editor, keep, marks, problems, save, showText } from "./text.js";
+import { editor, goTo, keep, marks, problems, save, showText } from "./text.js";
 
 async function start() {
   const folder = await ask("folder");
-  app.readOnly = Boolean(folder.read_only);
-  $("run").disabled = app.readOnly;
-  if (folder.read_only) trouble(folder.read_only);
+  app.readOnly = folder.read_only;
+  $("run").disabled = Boolean(app.readOnly);
+  trouble(null);
   listed(folder);
   const asked = decodeURIComponent(location.hash.replace(/^#\/scene\//, ""));
   await open(folder.scenes.includes(asked) ? asked : folder.first || folder.scenes[0]);
@@ -26,6 +26,7 @@ function listed(folder) {
 }
 
 export async function open(name) {
+  const other = name !== app.scene;
   app.scene = name;
   app.measure = "";
   app.past = [];
@@ -33,7 +34,9 @@ export async function open(name) {
   $("scene").value = name;
   $("state").textContent = "reading the scene …";
   const found = await ask("scene");
+  if (app.scene !== name) return; // another one was opened in the meantime
   showText(found.text, found.digest);
+  if (other) $("editor").querySelector(".cm-scroller").scrollTop = 0;
   problems(found.problems, found.warnings ?? []);
   $("title").textContent = found.title ?? name;
   document.title = `${found.title ?? name} · tol3d`;
@@ -45,6 +48,8 @@ export async function open(name) {
   if (broken) {
     $("state").textContent = "the scene cannot be read: mend its text";
     $("tree").replaceChildren();
+    app.now = {};
+    app.beside = [];
     return;
   }
   app.now = found.notes.now;
@@ -129,7 +134,7 @@ $("tree").addEventListener("click", (event) => {
   if (own.dataset.section === "measures" && !event.target.closest("summary")) choose(own.dataset.name).catch(trouble);
   if (own.dataset.line) {
     $("text").open = true;
-    editor.go(Number(own.dataset.line));
+    goTo(Number(own.dataset.line));
   }
 });
 document.addEventListener("keydown", (event) => {

@@ -8,7 +8,7 @@ if (location.hash.length > 1 && !location.hash.startsWith("#/")) {
 }
 
 export const app = {
-  scene: "", measure: "", now: {}, beside: [], past: [], digest: "", saved: "", readOnly: false, wish: 0, solid: 0, stopped: false,
+  scene: "", measure: "", now: {}, beside: [], past: [], digest: "", saved: "", readOnly: "", wish: 0, solid: 0, stopped: false,
 };
 
 export async function ask(name, told = {}) {
@@ -32,9 +32,9 @@ export function signed(words) { // as reports show units
   return words.replace(/(?<=[\s\d])um\b/g, "µm");
 }
 
-export function trouble(error) {
-  $("trouble").textContent = error ? error.message ?? error : "";
-  $("trouble").hidden = !error;
+export function trouble(error) { // without one it says that this app only reads, if so
+  $("trouble").textContent = error ? error.message ?? error : app.readOnly;
+  $("trouble").hidden = !$("trouble").textContent;
 }
 
 export function button(words, act) {

@@ -1,6 +1,6 @@
 // The assembly in 3D.
 import { $, app, ask } from "./ask.js";
-import { editor } from "./text.js";
+import { goTo } from "./text.js";
 
 const STEPS = 200; // of a slider of positions
 const MANY = 4; // sliders that are shown when they are asked for
@@ -147,7 +147,7 @@ function find(part, feature) {
   for (let above = own.closest("details"); above; above = above.parentElement.closest("details")) above.open = true;
   own.scrollIntoView({ block: "nearest" });
   own.focus({ preventScroll: true });
-  if (own.dataset.line) editor.go(Number(own.dataset.line));
+  if (own.dataset.line) goTo(Number(own.dataset.line));
 }
 
 function choose(names) {

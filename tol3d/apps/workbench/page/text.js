@@ -16,6 +16,18 @@ export function showText(text, digest) {
   $("saved").textContent = "";
 }
 
+const ROOM = 60; // px, for the message below a line
+
+export function goTo(line) { // the column moves no further than it must: the assembly stays in sight
+  const column = $("middle"), before = column.scrollTop;
+  editor.go(line);
+  requestAnimationFrame(() => {
+    column.scrollTop = before;
+    const own = $("editor").querySelector(".cm-activeLine")?.getBoundingClientRect(), { top, bottom } = column.getBoundingClientRect();
+    if (own) column.scrollTop += Math.max(0, own.bottom + ROOM - bottom) + Math.min(0, own.top - ROOM - top);
+  });
+}
+
 let later = 0;
 function textChanged() {
   const text = editor.text();
