@@ -9,9 +9,9 @@ import { editor, keep, marks, problems, save, showText } from "./text.js";
 
 async function start() {
   const folder = await ask("folder");
-  app.readOnly = Boolean(folder.read_only);
-  $("run").disabled = app.readOnly;
-  if (folder.read_only) trouble(folder.read_only);
+  app.readOnly = folder.read_only;
+  $("run").disabled = Boolean(app.readOnly);
+  trouble(null);
   listed(folder);
   const asked = decodeURIComponent(location.hash.replace(/^#\/scene\//, ""));
   await open(folder.scenes.includes(asked) ? asked : folder.first || folder.scenes[0]);
@@ -26,6 +26,7 @@ function listed(folder) {
 }
 
 export async function open(name) {
+  if (name !== app.scene) leave();
   app.scene = name;
   app.measure = "";
   app.past = [];
@@ -58,6 +59,11 @@ export async function open(name) {
   marks(found.problems);
   await show();
   window.dispatchEvent(new CustomEvent("tol3d-scene"));
+}
+
+function leave() { // nothing of a scene stands under the name of another
+  for (const own of ["answer", "chart", "result", "sliders", "beside"]) $(own).replaceChildren();
+  window.dispatchEvent(new CustomEvent("tol3d-leave"));
 }
 
 export async function show() {

@@ -8,7 +8,7 @@ if (location.hash.length > 1 && !location.hash.startsWith("#/")) {
 }
 
 export const app = {
-  scene: "", measure: "", now: {}, beside: [], past: [], digest: "", saved: "", readOnly: false, wish: 0, solid: 0, stopped: false,
+  scene: "", measure: "", now: {}, beside: [], past: [], digest: "", saved: "", readOnly: "", wish: 0, solid: 0, stopped: false,
 };
 
 export async function ask(name, told = {}) {
@@ -33,8 +33,9 @@ export function signed(words) { // as reports show units
 }
 
 export function trouble(error) {
-  $("trouble").textContent = error ? error.message ?? error : "";
-  $("trouble").hidden = !error;
+  const words = error?.message ?? error ?? app.readOnly; // why nothing can be kept stays in sight
+  if ($("trouble").textContent !== words) $("trouble").textContent = words; // else it would be heard again
+  $("trouble").hidden = !words;
 }
 
 export function button(words, act) {
