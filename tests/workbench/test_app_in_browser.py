@@ -592,6 +592,8 @@ def test_every_control_has_a_name(app: App) -> None:
     assert len(named) > 40
     assert [own for own in named if not own[1].strip()] == []
     assert ("slider", f"{CENTRE}: how wide") in named
+    width = "document.querySelector('#sliders input[type=range]').getAttribute('aria-valuetext')"
+    assert app.page.ask(f"{width} === document.querySelector('#sliders input[type=text]').value")
     assert (
         app.page.ask("document.querySelectorAll('[onclick], :is(div, span):not(.cm-scroller)[tabindex]').length") == 0
     )

@@ -428,5 +428,6 @@ def test_an_app_that_ends_asks_at_a_terminal_alone_whether_jobs_go_on(
     told = capsys.readouterr().out
     assert (words in told) == (not terminal)
     assert told.startswith("cancelled; what is finished is kept") == bool(cancelled)
+    assert told.startswith("it goes on;") == (terminal and not cancelled)
     commands._leave(_Queue())  # type: ignore[arg-type]
     assert capsys.readouterr().out == ""

@@ -287,15 +287,16 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
     else:
         low, high = ends
         at = round(math.log(_factor(draw, other)) / math.log(STEP))
+        now_words = now_class or (written(contributor, other) if moved else scene_words)
         inside.append(
             tag(
                 "div",
                 tag(
                     "input", type="range", min=low, max=high, value=min(max(at, low), high), step=1, data_line=line,
-                    aria_label=f"{line}: how wide", title=_why(scope),
+                    aria_label=f"{line}: how wide", aria_valuetext=now_words, title=_why(scope),
                 ),
                 tag(
-                    "input", type="text", value=now_class or (written(contributor, other) if moved else scene_words),
+                    "input", type="text", value=now_words,
                     data_line=line, data_scene=scene_words, aria_label=f"{line}: tolerance",
                     list=listed if offered else None,
                 ),

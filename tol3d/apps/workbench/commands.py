@@ -1,5 +1,6 @@
 """Command of the app."""
 
+import logging
 import socket
 import stat
 import sys
@@ -65,6 +66,8 @@ def app(
             if browser and not webbrowser.open(_opener(Path(folder), address).as_uri()):
                 warn("no browser could be opened: open the address above in one on this computer")
             serving = uvicorn.Server(config)
+            # a question that Ctrl-C cuts short is no error to tell of
+            logging.getLogger("uvicorn.error").addFilter(lambda _: not serving.should_exit)
 
             def watch() -> None:
                 while not serving.should_exit:
@@ -114,6 +117,7 @@ def _leave(jobs: "Jobs") -> None:
     except (typer.Abort, KeyboardInterrupt):
         stays = True
     if stays:
+        tell("it goes on; the next tol3d app on this folder shows it")
         return
     for job in reversed(working):  # none begins when the one before it ends
         jobs.cancel(job.id)

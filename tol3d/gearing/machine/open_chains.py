@@ -6,7 +6,7 @@ end, each as often.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Self
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from tol3d.assembly.from_scene.setting import Setting
 from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.errors import InputError
 from tol3d.gearing.machine.chain import Chain, Joint, forward
 from tol3d.gearing.machine.grammar.open_chain import FLANK, OpenChainSpec, flank_name, turn_name
 from tol3d.gearing.model import Measure, Model
@@ -24,7 +25,7 @@ from tol3d.gearing.model.mesh_measures import default_reading
 from tol3d.gearing.model.train_measures import lost_motion
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-from tol3d.statistics.distributions.base import Distribution
+from tol3d.statistics.distributions.base import Distribution, Place
 from tol3d.statistics.distributions.constant import Constant
 from tol3d.study.system.draw import Scalar
 from tol3d.study.system.plain import UNITS, PlainContributor
@@ -169,6 +170,14 @@ class EitherSide(Distribution):
     def limits(self) -> tuple[float, float]:
         """-1 and 1."""
         return -1.0, 1.0
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """None: which side of its play a joint lies on has no width.
+
+        Raises:
+            InputError: always.
+        """
+        raise InputError("expected a law that can be scaled, got a side of a joint's play, which has no width")
 
 
 HALF: Final = 0.5

@@ -27,6 +27,7 @@ function listed(folder) {
 
 export async function open(name) {
   const other = name !== app.scene;
+  if (other) leave();
   app.scene = name;
   app.measure = "";
   app.past = [];
@@ -67,6 +68,11 @@ export async function open(name) {
   marks(found.problems);
   await show();
   window.dispatchEvent(new CustomEvent("tol3d-scene"));
+}
+
+function leave() { // nothing of a scene stands under the name of another
+  for (const own of ["answer", "chart", "result", "sliders", "beside"]) $(own).replaceChildren();
+  window.dispatchEvent(new CustomEvent("tol3d-leave"));
 }
 
 export async function show() {

@@ -32,9 +32,10 @@ export function signed(words) { // as reports show units
   return words.replace(/(?<=[\s\d])um\b/g, "µm");
 }
 
-export function trouble(error) { // without one it says that this app only reads, if so
-  $("trouble").textContent = error ? error.message ?? error : app.readOnly;
-  $("trouble").hidden = !$("trouble").textContent;
+export function trouble(error) {
+  const words = error?.message ?? error ?? app.readOnly; // why nothing can be kept stays in sight
+  if ($("trouble").textContent !== words) $("trouble").textContent = words; // else it would be heard again
+  $("trouble").hidden = !words;
 }
 
 export function button(words, act) {

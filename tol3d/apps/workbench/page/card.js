@@ -9,7 +9,7 @@ export async function refresh() {
   without("");
   $("reset").disabled = !Object.keys(app.now).length;
   $("aside").disabled = $("reset").disabled || app.beside.length >= 3;
-  $("keep").disabled = $("reset").disabled || app.readOnly;
+  $("keep").disabled = $("reset").disabled || Boolean(app.readOnly);
   $("undo").disabled = !app.past.length;
   changesTold();
   for (;;) {
@@ -89,7 +89,9 @@ export function forget() { // what waits to be estimated
 
 function fields(written) {
   for (const own of document.querySelectorAll("#sliders input[type=text]")) {
-    if (own !== document.activeElement) own.value = (written ?? {})[own.dataset.line] ?? own.dataset.scene;
+    const words = (written ?? {})[own.dataset.line] ?? own.dataset.scene;
+    if (own !== document.activeElement) own.value = words;
+    own.closest("li").querySelector("input[type=range]")?.setAttribute("aria-valuetext", words); // its steps tell nothing
   }
 }
 

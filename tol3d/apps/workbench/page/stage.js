@@ -175,6 +175,10 @@ $("factor").addEventListener("input", () => {
 for (const own of ["trial", "world"]) $(own).addEventListener("change", () => stage());
 $("lit").addEventListener("change", () => choose(null));
 window.addEventListener("tol3d-acting", light);
+window.addEventListener("tol3d-leave", () => {
+  view?.clear();
+  $("stage-words").textContent = "";
+});
 window.addEventListener("tol3d-scene", () => {
   if (scene !== app.scene) {
     view?.clear();
