@@ -38,7 +38,8 @@ function wish(held) {
 }
 
 async function show(asked) {
-  const bytes = await ask("view", asked);
+  const of = app.scene, bytes = await ask("view", asked);
+  if (of !== app.scene) return; // another scene was opened in the meantime
   const length = new DataView(bytes).getUint32(0), told = JSON.parse(new TextDecoder().decode(bytes.slice(4, 4 + length)));
   const model = bytes.slice(4 + length);
   if (!view) {
