@@ -18,6 +18,12 @@ const LINE = 15; // pixels between words of two names
 const TRIES = [0, 1, -1, 2, -2, 3, -3]; // lines by which words move to where there is room
 const BESIDE = [2, -2, 3, -3, 4, -4]; // those of a measure's number, which leaves its line free
 const NEAR = 12; // pixels from a place within which a pointer is over it
+const SIGNS = {
+  "⌖": "M8 1v14M1 8h14M8 3.5a4.5 4.5 0 1 0 .01 0z", "⌭": "M8 4.5a3.5 3.5 0 1 0 .01 0zM1.5 14l4-12M10.5 14l4-12",
+  "⌓": "M2 11a6 6 0 0 1 12 0z", "⌒": "M2 11a6 6 0 0 1 12 0", "⌯": "M4 5h8M1 8h14M4 11h8", "⏤": "M1 8h14",
+  "⌰": "M2 13h7M2 13l5-10M9 13l5-10M4.4 5l2.6-2 .3 3.3M11.4 5l2.6-2 .3 3.3",
+};
+const DRAWN = /([⌖⌭⌓⌒⌯⏤⌰Ⓐ-Ⓩ])/u;
 const MOST_LINES = 4; // of a flag; all, and the names of tolerances, where a pointer is over its place
 const HEAD = 9; // pixels, of an arrow
 const ON = 0.02; // of the size of the model: how far off a feature a click may be
@@ -514,7 +520,29 @@ function is(name, stated) {
 // Lines of a label, no more than so many.
 function fill(words, every, most = MOST_LINES) {
   const more = every.length - most, lines = more > 0 ? [...every.slice(0, most), `and ${more} more`] : every;
-  words.replaceChildren(...lines.flatMap((line, k) => k ? [document.createElement("br"), line] : [line]));
+  words.replaceChildren(...lines.flatMap((line, k) => [...(k ? [document.createElement("br")] : []), ...signed(line)]));
+}
+
+// Words with the signs of drawings drawn: many systems have no font with them.
+function signed(line) {
+  return line.split(DRAWN).filter(Boolean).map((own) => (DRAWN.test(own) ? sign(own) : own));
+}
+
+function sign(own) {
+  const svg = document.createElementNS(SVG, "svg"), add = (kind, told, words = "") => {
+    const found = svg.appendChild(document.createElementNS(SVG, kind));
+    for (const [key, value] of Object.entries(told)) found.setAttribute(key, value);
+    found.textContent = words;
+  };
+  svg.setAttribute("viewBox", "0 0 16 16");
+  svg.setAttribute("class", "sign");
+  add("title", {}, own);
+  if (SIGNS[own]) add("path", { d: SIGNS[own] });
+  else { // a letter in a circle
+    add("circle", { cx: 8, cy: 8, r: 7 });
+    add("text", { x: 8, y: 12 }, own.normalize("NFKD"));
+  }
+  return svg;
 }
 
 // A length in words, of mm.
