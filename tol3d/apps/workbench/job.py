@@ -16,6 +16,7 @@ from typing import Final
 
 from tol3d.apps.workbench.attempt import STARTS_WITHIN, Attempt, Order, Said
 from tol3d.apps.workbench.monitor import Monitor
+from tol3d.apps.workbench.words import OPTION
 from tol3d.errors import InputError, MechanismError
 from tol3d.import_path import named
 
@@ -59,7 +60,7 @@ def _ended(attempt: Attempt, order: Order, monitor: Monitor, options: tuple[str,
         monitor.now = replace(monitor.now, state="running", started=now, words="starting")
         return "done", named(WORK)(attempt, order, monitor, trusted)
     except (InputError, MechanismError) as error:
-        return "failed", str(error)
+        return "failed", OPTION.sub(r"\1: ", str(error))
     except MemoryError:
         return "failed", "out of memory: the input is not at fault; finished blocks are kept, and resuming goes on"
     except Exception as error:

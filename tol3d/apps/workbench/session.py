@@ -24,6 +24,7 @@ from tol3d.analyses.results import pilots_of, results_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
 from tol3d.analyses.stated_classes import classes_of, sizes_of
 from tol3d.analyses.stated_limits import OtherLimits, limited, limits_of_text
+from tol3d.apps.workbench.words import OPTION
 from tol3d.apps.workbench.workspace import WhatIf, digest
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
@@ -284,13 +285,13 @@ class Session:
             InputError: no such measure, or no such limits of it.
         """
         stated = {key.removeprefix(LIMITS): words for key, words in now.items() if key.startswith(LIMITS)}
-        return [_in_a_page("--limits", limits_of_text, self.response, f"{own}={text}") for own, text in stated.items()]
+        return [_in_a_page(limits_of_text, self.response, f"{own}={text}") for own, text in stated.items()]
 
     def _change(self, line: str, words: str) -> Change:
         if words.startswith("x"):
-            return _in_a_page("--factor", factor_of, self.response, f"{line}={words.removeprefix('x')}")
+            return _in_a_page(factor_of, self.response, f"{line}={words.removeprefix('x')}")
         read = partial(change_of, sizes=self.sizes)
-        return _in_a_page("--set", read, self.response, f"{line}={words}")
+        return _in_a_page(read, self.response, f"{line}={words}")
 
     @cached_property
     def sizes(self) -> Mapping[str, Quantity]:
@@ -403,12 +404,12 @@ class Session:
             raise InputError("expected a scene with tolerances, got none: all its builds are the nominal one")
 
 
-def _in_a_page(option: str, read: Callable[[Response, str], Own], response: Response, text: str) -> Own:
+def _in_a_page(read: Callable[[Response, str], Own], response: Response, text: str) -> Own:
     """A change read as from a command line, which a page does not have."""
     try:
         return read(response, text)
     except InputError as error:
-        raise InputError(str(error).removeprefix(f"{option} {text!r}: ").removeprefix(f"{option}: ")) from None
+        raise InputError(OPTION.sub("", str(error))) from None
 
 
 def _made(moved: MovedValues, name: str, turn: Turn) -> NoEstimate | None:

@@ -1,11 +1,15 @@
 """Arguments that a page may give a job: none of them names a file or allows a program."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any, Final
 
 from tol3d.errors import InputError
+
+OPTION: Final = re.compile(r"^--([a-z-]+)(?: '.*?')?: ")
+"""Front of a refusal on a command line, whose options a page does not have; it has fields of these names."""
 
 
 @dataclass(frozen=True)
