@@ -149,7 +149,7 @@ CHANGES = {
     "a mesh in place of a gear": (
         ("driver: pinion", "driver: gear pair"),
         "moves.gear pair.driver: expected the name of a spur gear or a helical gear or an internal gear, "
-        "got 'gear pair', which is a mesh of spur gears",
+        "got 'gear pair', which is a mesh of spur or helical gears",
     ),
     "a gear that drives itself": (
         ("driver: pinion", "driver: wheel"),
@@ -161,7 +161,8 @@ CHANGES = {
     ),
     "a gear in place of a mesh": (
         ("of: gear pair", "of: wheel"),
-        "tolerances.centre distance.of: expected the name of a mesh of spur gears, got 'wheel', which is a spur gear",
+        "tolerances.centre distance.of: expected the name of a mesh of spur or "
+        "helical gears, got 'wheel', which is a spur gear",
     ),
     "eccentricity of a housing": (
         (

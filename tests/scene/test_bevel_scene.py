@@ -66,7 +66,8 @@ WRONG = {
     "a centre distance": (("kind: bevel_mesh", "kind: mesh"), '10: moves.pair.shaft_angle: unknown key "shaft_angle"'),
     "a centre distance's tolerance": (
         (OTHER, "kind: centre_distance, of: pair, distribution: {kind: constant, value: 0 um}"),
-        "8: tolerances.other.of: expected the name of a mesh of spur gears, got 'pair', which is a bevel mesh",
+        "8: tolerances.other.of: expected the name of a mesh of spur or "
+        "helical gears, got 'pair', which is a bevel mesh",
     ),
     "warm bevel gears": (
         (OTHER, "kind: temperature, of: driver, distribution: {kind: constant, value: 20 K}"),

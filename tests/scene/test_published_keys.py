@@ -33,6 +33,7 @@ STATED: Final = {
     "measures.*.law_sigmas_um.*": "what follows of the scene's own zones and laws",
     "measures.*.lost_motion.arcmin_per_um": "the scene states it",
     "measures.*.reasons.*": "counts of words of this program: which pair decided what failed",
+    "backlash.*": "what follows of the scene's own tolerances",
     "trains.*.stages.*.teeth": "the scene states it",
     "trains.*.stages.*.ways": "the scene states it",
     "joint.correlations.*": "matrices; published by both names",

@@ -321,7 +321,8 @@ CHANGES = {
     ),
     "lost motion of a mesh": (
         ("    of: shoulder swing\n    over: random", "    of: spur pair\n    over: random"),
-        "measures.lost motion.of: expected the name of a train, got 'spur pair', which is a mesh of spur gears; known "
+        "measures.lost motion.of: expected the name of a train, got 'spur pair', "
+        "which is a mesh of spur or helical gears; known "
         "here: shoulder swing",
     ),
     "normal backlash of a train": (
