@@ -20,6 +20,7 @@ from tol3d.apps.workbench.workspace import WhatIf
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.chart import Axis, Chart, Filled, Outline, Panel, Series
+from tol3d.report.column import unexplained_words
 from tol3d.report.html.blocks import Inside, Markup, tag, together
 from tol3d.report.html.frame import NARROW
 from tol3d.report.html.svg import heard, svg
@@ -52,8 +53,6 @@ STEP: Final = 1.01
 WIDEST: Final = 4.0
 """Factor at the ends of a slider, where nothing ends it before."""
 KINDS: Final = {"OK": "ok", "NOT OK": "not-ok", "too few trials": "open", "no limits": "none"}
-FULL: Final = 0.9
-"""Fraction of the variance from which on shares add up; below it what is not attributed stands first."""
 
 
 @dataclass(frozen=True)
@@ -240,7 +239,8 @@ def sliders(session: Session, measure: str, now: WhatIf, summary: MeasureSummary
         return tag(
             "p", session.response.nothing_acts(session.measure(measure)) or "no tolerance acts on it", class_="note"
         )
-    first = [*_not_attributed(summary)] if summary is not None else []
+    words = unexplained_words(summary) if summary is not None else ""
+    first = [tag("p", words, class_="warning")] if words else []
     return together(
         *first, tag("ul", *(_slider(session, line, now, shares.get(line)) for line in lines), class_="sliders")
     )
@@ -251,13 +251,6 @@ def _shares(response: Response, summary: MeasureSummary) -> Mapping[str, float]:
     key = f"{summary.best_method}_percent"
     known = {own.name: own[key] or 0.0 for own in summary.contributors}
     return {line: sum(known.get(name, 0.0) for name in names) for line, names in response.lines.items()}
-
-
-def _not_attributed(summary: MeasureSummary) -> Iterator[Markup]:
-    own = (summary.shares_by or {}).get(summary.best_method)
-    if own is not None and own.explained_percent is not None and own.explained_percent < 100 * FULL:
-        words = f"not attributed by regression: {percent_text(100 - own.explained_percent)} %; shares are by {own.by}"
-        yield tag("p", words, class_="warning")
 
 
 def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Markup:
