@@ -565,6 +565,8 @@ function tol3dView(figure, model, told) {
     const stage = document.createElement("div");
     stage.className = "stage";
     canvas = document.createElement("canvas");
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", "parts in 3D");
     stage.append(canvas);
     figure.prepend(stage);
   }
