@@ -533,7 +533,7 @@ def test_who_sees_or_moves_little_can_use_it(app: App) -> None:
     ]
     headings = app.page.ask("[...document.querySelectorAll('h1, main h2')].map(own => own.textContent)")
     assert headings[1:] == ["measure", "assembly in 3D and scene as text", "tree of the scene"]
-    assert app.page.ask("document.querySelector('#stage canvas').getAttribute('aria-label')") == "parts in 3D"
+    app.page.wait("document.querySelector('#stage canvas[aria-label=\"parts in 3D\"]') !== null")
     for step in (10, 20, 30):
         app.told(SLIDER, "input", step)
         app.page.wait("document.querySelector('#chart .legend .dashed') !== null")
