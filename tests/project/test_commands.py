@@ -102,6 +102,8 @@ def prepare(page: str, tol3d: Command) -> None:
         Path("spur_pair_25.yaml").write_text(thin("spur_pair", **limit), "utf-8")
     elif page == "assemblies.md":
         Path("scene.yaml").write_text(thin("two_plates"), "utf-8")
+    elif page == "rexs.md":
+        shutil.copy(ROOT / "tests" / "drafting" / "spur_stage.rexs", "gearbox.rexs")
     elif page == "step.md":
         for name, file in (
             ("box", "nist_ctc_01"),
