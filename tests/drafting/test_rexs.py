@@ -15,7 +15,6 @@ from rexs_texts import Attributes, Rexs, Writer, pair, planetary, two_stages, zi
 from scipy.optimize import brentq
 
 from tol3d.apps.drafting.rexs import gearbox_scene_from, is_rexs
-from tol3d.apps.drafting.rexs import scene as rexs_scene
 from tol3d.apps.drafting.rexs.container import LARGEST_TEXT, MOST_MEMBERS, read_document
 from tol3d.apps.drafting.rexs.document import MOST_COMPONENTS
 from tol3d.apps.drafting.rexs.gearbox import Gearbox
@@ -340,14 +339,13 @@ def test_helical_stages_are_read_with_their_backlash() -> None:
     assert [1e3 * (own.normal_backlash or 0) for own in (fast, slow)] == pytest.approx([0.001, -0.004], abs=6e-4)
 
 
-def test_helical_gears_wait_for_a_grammar_that_has_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    if not rexs_scene.knows("helical_gear"):
-        assert refusal(two_stages()) == (
-            "box.rexs: gear 6: expected straight teeth, got a helix; scenes have no helical gears yet"
-        )
-    monkeypatch.setattr(rexs_scene, "knows", lambda kind: True)
+def test_helical_gears_are_drafted_with_their_meshes_alone() -> None:
     drafted = gearbox_draft(two_stages().file())
-    read = yaml.safe_load(drafted.scene()[0])
+    text = drafted.scene()[0]
+    read = yaml.safe_load(text)
+    assert [own["kind"] for own in read["moves"].values()] == ["mesh", "mesh"]
+    assert "lost motion of whole trains: helical gears are simulated in their meshes alone" in text
+    simulation_of(load_text(text, Path("box.yaml")), Overrides())
     assert read["parts"]["a"] == {
         "kind": "helical_gear", "teeth": 27, "module": "4.5 mm", "pressure_angle": "20 deg", "face_width": "15 mm",
         "helix_angle": "21 deg", "hand": "right", "profile_shift": 0.231415,
@@ -926,11 +924,6 @@ def test_a_face_without_a_width_is_a_guess() -> None:
     text = gearbox_draft(pair().having(5, face_width=None).file()).scene()[0]
     assert "face_width: 20 mm, profile_shift: 0.2}  # gear 5; guess: face_width not in the file\n" in text
     assert text.count("guess") == 1
-
-
-def test_the_grammar_says_which_gears_scenes_have() -> None:
-    assert rexs_scene.knows("spur_gear")
-    assert not rexs_scene.knows("square_gear")
 
 
 def test_numbers_in_brackets_are_part_of_a_name() -> None:

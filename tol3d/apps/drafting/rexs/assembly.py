@@ -147,7 +147,7 @@ def moves(drives: Sequence[tuple[Drive, Mounting]], trains: Sequence[Train], nam
         for link in drive.links:
             cause = link.cause
             if isinstance(cause, Stage):
-                yield _mesh(cause, link, places.azimuths, names)
+                yield _mesh(cause, link, places.azimuths, names, either=bool(trains))
             else:
                 yield _set(cause, link, names)
     for train in trains:
@@ -159,14 +159,15 @@ def _is_set_alone(gearbox: Gearbox) -> bool:
     return not gearbox.stages and len(gearbox.sets) == 1
 
 
-def _mesh(stage: Stage, link: Link, azimuths: Mapping[int, float], names: Named) -> Entry:
+def _mesh(stage: Stage, link: Link, azimuths: Mapping[int, float], names: Named, *, either: bool) -> Entry:
+    """A mesh, on either flank where a train says which way the load is."""
     driver, driven = names.of(link.driver), names.of(link.driven)
     azimuth = degrees(azimuths[stage.id])
-    line = (
-        f"{{kind: mesh, driver: {scalar(driver)}, driven: {scalar(driven)}, "
-        f"centre_distance: {length(stage.centre_distance)}, "
-        f"{'' if azimuth == '0 deg' else f'azimuth: {azimuth}, '}working_flank: either}}"
-    )
+    words = [f"kind: mesh, driver: {scalar(driver)}, driven: {scalar(driven)}"]
+    words.append(f"centre_distance: {length(stage.centre_distance)}")
+    words += [f"azimuth: {azimuth}"] if azimuth != "0 deg" else []
+    words += ["working_flank: either"] if either else []
+    line = f"{{{', '.join(words)}}}"
     told = f"stage {stage.id}: {nominal(stage)} without tolerances"
     return Entry("moves", scalar(names.of(stage)), [Wording((line,), told)])
 

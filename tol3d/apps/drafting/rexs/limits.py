@@ -53,7 +53,8 @@ def tolerances(gearbox: Gearbox, names: Named, bearings: Sequence[Bearing]) -> I
     for own in gearbox.sets:
         yield _pins(own, names)
     for gear in meshing:
-        yield from _single_teeth(gear, names)
+        if not gear.helical:  # scenes have no deviations of their single teeth
+            yield from _single_teeth(gear, names)
     for bearing in bearings:
         yield _clearance(bearing, names)
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, get_args
+from typing import Final
 
 from tol3d.apps.drafting.draft import LONGEST, TRIALS, settled
 from tol3d.apps.drafting.entry import Entry, Scene
@@ -19,11 +19,10 @@ from tol3d.apps.drafting.words import cleaned, comment, scalar
 from tol3d.cad.step import shown
 from tol3d.errors import InputError, SceneError
 from tol3d.files import FileContent
-from tol3d.kinds import all_mechanisms
 from tol3d.simulate import Overrides, load_text, simulation_of
 
 SCENE: Final = Path("scene.yaml")
-HELICAL: Final = "helical_gear"
+NO_TRAIN: Final = "lost motion of whole trains: helical gears are simulated in their meshes alone"
 TIGHT: Final = 5e-4  # mm; normal backlash that is none: files print profile shifts with 4 digits and more
 MOST_NOTES: Final = 12  # lines on the screen; all of them are in the scene
 
@@ -130,26 +129,24 @@ def gearbox_draft(content: FileContent) -> GearboxDraft:
     """A scene from a REXS file, not yet checked.
 
     Raises:
-        RexsError: the file cannot be read, or has helical gears that scenes do not have.
+        RexsError: the file cannot be read.
     """
     gearbox = gearbox_of(read_document(content))
     stages = [*gearbox.stages, *(stage for own in gearbox.sets for stage in own.stages)]
-    gears = [gear for stage in stages for gear in stage.gears]
-    helical = next((gear for gear in gears if gear.helical), None)
-    if helical is not None and not knows(HELICAL):
-        raise RexsError(f"gear {helical.id}: expected straight teeth, got a helix; scenes have no helical gears yet")
+    helical = any(gear.helical for stage in stages for gear in stage.gears)
     shafts = scene_shafts(gearbox)
     bearings, others = chosen_bearings(gearbox, shafts)
     names = named(gearbox, shafts, bearings)
     mounted = [(drive, mounting(drive, gearbox)) for drive in drives(gearbox)]
-    trains = list(trains_of(mounted, gearbox, names))
+    trains = [] if helical else list(trains_of(mounted, gearbox, names))
     entries = [
         *parts(gearbox, names, _all_places(mounted), bearings, _rounding(stages)),
         *tolerances(gearbox, names, bearings),
         *moves(mounted, trains, names),
         *measures(gearbox, trains, names),
     ]
-    remarks = [*gearbox.left_out, *others, *_unsaid(gearbox, names), *(own for _, at in mounted for own in at.remarks)]
+    remarks = [*gearbox.left_out, *([NO_TRAIN] if helical else ()), *others, *_unsaid(gearbox, names)]
+    remarks += [own for _, at in mounted for own in at.remarks]
     return GearboxDraft(content.path.name, gearbox, entries, remarks)
 
 
@@ -179,12 +176,6 @@ def _unsaid(gearbox: Gearbox, names: Named) -> Iterator[str]:
             if gear.classes and gear.id not in meshing:
                 grades = ", ".join(map(str, sorted({*gear.classes.values()})))
                 yield f"{names.of(gear)}: class {grades} of ISO 1328-1: single teeth of planetary sets do not deviate"
-
-
-def knows(kind: str) -> bool:
-    """True if scenes have parts of a kind."""
-    specs = (spec for mechanism in all_mechanisms() for spec in mechanism.parts)
-    return any(kind in get_args(spec.model_fields["kind"].annotation) for spec in specs)
 
 
 def _check(text: str) -> None:
