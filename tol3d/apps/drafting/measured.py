@@ -7,13 +7,12 @@ from itertools import combinations, islice
 from typing import Final
 
 import numpy as np
-import yaml
 
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.features import Group
 from tol3d.apps.drafting.parts import DraftedPart
 from tol3d.apps.drafting.touching_faces import TOUCHING, Coaxial, Contacts, feature, size_of
-from tol3d.apps.drafting.words import Names, across, direction, length, scalar
+from tol3d.apps.drafting.words import Names, across, direction, length, scalar, unquoted
 from tol3d.cad.step import FoundFeature
 from tol3d.numerics.arrays import Array
 
@@ -209,7 +208,7 @@ def varied(groups: Sequence[Key]) -> Iterator[Key]:
 
 def name_of(entry: Entry) -> str:
     """The name of an entry as it stands in results."""
-    return str(yaml.safe_load(entry.name))
+    return unquoted(entry.name)
 
 
 def max_weight(group: Mapping[Key, Candidate]) -> float:

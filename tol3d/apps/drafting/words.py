@@ -18,6 +18,7 @@ UNNAMEABLE: Final = frozenset("/\\:")  # what no name holds
 UNNAMEABLE_FEATURE: Final = frozenset("/\\:.|-")
 MARKS: Final = frozenset("{}[],#&*!>'\"%@`?")
 """Signs that would have a name quoted everywhere; it gets blanks in their place."""
+ESCAPED: Final = re.compile(r"\\(?:(x[0-9a-f]{2}|u[0-9a-f]{4}|U[0-9a-f]{8})|(.))")
 
 
 def scalar(text: str) -> str:
@@ -25,6 +26,17 @@ def scalar(text: str) -> str:
     if PLAIN.fullmatch(text) and text.lower() not in YAML_WORDS:
         return text
     return '"' + "".join(_escaped(sign) for sign in text) + '"'
+
+
+def unquoted(written: str) -> str:
+    r"""The text that `scalar` has written so.
+
+    >>> unquoted(scalar('a "b"\tc\\d')), unquoted(scalar("plain words"))
+    ('a "b"\tc\\d', 'plain words')
+    """
+    if not written.startswith('"'):
+        return written
+    return ESCAPED.sub(lambda own: own[2] or chr(int(own[1][1:], 16)), written[1:-1])
 
 
 def _escaped(sign: str) -> str:
