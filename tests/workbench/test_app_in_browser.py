@@ -80,9 +80,10 @@ class App:
 
     def load(self, width: int = 1400) -> None:
         """Open the page as it is after a reload, all there, in its scene of the start."""
+        self.page.open("about:blank")
+        self.server.thread.submit(lambda: None).result()  # what the page before has asked is answered
         self.file.write_text(TEXT, "utf-8")
         (self.server.workspace.notes_folder / f"{SCENE}.json").unlink(missing_ok=True)
-        self.page.open("about:blank")
         self.page.told.clear()
         self.page.asked.clear()
         self.page.open(self.address, width)
