@@ -35,7 +35,7 @@ class GearPresenter(ShowsBuilds):
     def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
         """Limits of backlash, tables of every train, and those of its links."""
         limits = (summary.backlash or ()) if isinstance(summary, TrainsOfRun) else ()
-        backlash = _lazily("backlash_table").backlash_table(limits)
+        backlash = _lazily("drawing_sizes").backlash_table(limits)
         return (
             *backlash,
             *_lazily("train_tables").train_report(summary),

@@ -1,13 +1,14 @@
-"""Tooth thickness of every gear as a drawing states it: arc, span and size over pins, nominal and at its limits."""
+"""Tooth thickness and backlash as drawings state them: arc, span and size over pins; j_bn, j_wt, j_t and j_r."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Final
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.effects import ToothThickness
 from tol3d.gearing.model import Model
+from tol3d.gearing.summary.types import BacklashLimits
 from tol3d.gears import Gear, InternalGear, SpurGear
 from tol3d.gears.tooth_measures import OverBalls, Span, ToothMeasure, pins_of, span_of
 from tol3d.report.declared import declared_table
@@ -19,6 +20,12 @@ MEANING = (
     "span and pins are those of the scene, or chosen to touch near the reference circle shifted by x m; their limits "
     "follow from the tooth thickness (the sum of its tolerances), without errors of measurement; for an internal gear "
     "over spaces and between pins"
+)
+BACKLASH_MEANING: Final = (
+    "j_bn normal, j_wt and j_t as arcs on the working and the reference circles, j_r radial. theoretical: by thickness "
+    "and centre distance; acceptance: by all tolerances but temperature; operating: by all. least, largest: the worst "
+    "of a search among builds within the tolerances, at rest; mean ∓ 3 σ: by the analytic method at any position, of "
+    "tolerances that do not depend on each other, no further than these"
 )
 
 
@@ -132,3 +139,11 @@ def _size(measure: ToothMeasure, gear: SpurGear | InternalGear, deviation: float
 
 def _row(label: str, words: str, sizes: Iterable[float | None]) -> tuple[Row, SizeRow]:
     return Row(label, (), unit="mm"), SizeRow(words, *(size if math.isfinite(size or 0.0) else None for size in sizes))
+
+
+def backlash_table(limits: Sequence[BacklashLimits]) -> list[PageItem]:
+    """A row for each mesh, stage and word of backlash; nothing without limits."""
+    if not limits:
+        return []
+    table = declared_table("", [(Row(own.mesh, (), unit="um"), own) for own in limits])
+    return [*titled("backlash as drawings state it", replace(table, repeated=1)), note(BACKLASH_MEANING)]

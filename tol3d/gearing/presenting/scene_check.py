@@ -18,9 +18,8 @@ from tol3d.gearing.model import (
 )
 from tol3d.gearing.model.links import LoadPath, Parallel, links_of
 from tol3d.gearing.model.trains import gravity_torque
-from tol3d.gearing.presenting.backlash_table import backlash_table
 from tol3d.gearing.presenting.coefficient_tables import coefficients_tables
-from tol3d.gearing.presenting.drawing_sizes import drawing_sizes
+from tol3d.gearing.presenting.drawing_sizes import backlash_table, drawing_sizes
 from tol3d.gearing.presenting.shown_train import link_blocks
 from tol3d.gearing.summary.backlash_stages import backlash_stages
 from tol3d.gearing.summary.measure_words import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words

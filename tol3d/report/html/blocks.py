@@ -87,7 +87,8 @@ def _attribute(key: str) -> str:
 
 
 def _value(own: object) -> str:
-    return f"{own:.6g}" if isinstance(own, float) else escaped(own)
+    """A number is a length in a drawing, to a hundredth of a pixel, or a share below 1."""
+    return f"{round(own, 2) if abs(own) > 1.0 else own:.6g}" if isinstance(own, float) else escaped(own)
 
 
 SCROLLS: Final = "wide"

@@ -76,7 +76,6 @@ def svg(chart: Chart, frame: Frame) -> Markup:
         viewBox=f"0 0 {frame.width:.0f} {height:.0f}",
         role="img",
         class_=f"chart {frame.name}",
-        xmlns="http://www.w3.org/2000/svg",
     )
 
 
@@ -270,7 +269,8 @@ def _rows(panel: Panel, names: Names, x: Scale, top: float, frame: Frame, *, bes
 
 def _name(name: str, right: float, middle: float, frame: Frame) -> Markup:
     short = cut(name, frame.letters)
-    return tag("text", tag("title", name), short, x=right, y=middle, text_anchor="end", class_="name")
+    whole = tag("title", name) if short != name else None
+    return tag("text", whole, short, x=right, y=middle, text_anchor="end", class_="name")
 
 
 def _lengths(name: str, row: int, every: Sequence[Lengths], x: Scale, top: float) -> Iterator[Markup]:
@@ -403,7 +403,9 @@ def _matrix(chart: Chart, frame: Frame) -> tuple[list[Markup], float]:
 
 def _head(name: str, x: float, y: float) -> Markup:
     place = f"translate({x:.1f} {y:.0f}) rotate(-90)"
-    return tag("text", tag("title", name), cut(name, LONGEST_HEAD), class_="name", transform=place, text_anchor="start")
+    short = cut(name, LONGEST_HEAD)
+    whole = tag("title", name) if short != name else None
+    return tag("text", whole, short, class_="name", transform=place, text_anchor="start")
 
 
 def _cell(share: float, strength: float, words: str, x: float, y: float, wide: float) -> Iterator[Markup]:

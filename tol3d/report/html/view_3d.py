@@ -5,10 +5,10 @@ import gzip
 import json
 import re
 import tempfile
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from io import BytesIO
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -158,7 +158,7 @@ def _still(run: Run) -> str:
 
 
 def _figure(model: ViewModel, packed: bytes, still: str, notes: Sequence[str]) -> Markup:
-    data = json.dumps(model.told(), sort_keys=True, separators=(",", ":")).replace("<", "\\u003c")
+    data = json.dumps(_plain(model.told()), sort_keys=True, separators=(",", ":")).replace("<", "\\u003c")
     picture = tag("img", src=f"data:image/jpeg;base64,{still}", alt="the parts, as tol3d view shows them")
     return tag(
         "figure",
@@ -195,3 +195,12 @@ def _controls(model: ViewModel) -> Iterator[Markup]:
         for k, own in enumerate(model.parts)
     )
     yield tag("details", tag("summary", "parts"), tag("div", *boxes, class_="controls"), open="")
+
+
+def _plain(told: Any) -> Any:
+    """Data for JSON with whole numbers as such: 28 for 28.0, which a browser reads alike."""
+    if isinstance(told, Mapping):
+        return {key: _plain(own) for key, own in told.items()}
+    if isinstance(told, list | tuple):
+        return [_plain(own) for own in told]
+    return int(told) if isinstance(told, float) and told.is_integer() else told
