@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,10 @@ from PIL import Image
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 PATIENCE = 60.0  # s
+
+
+class PageLeftError(AssertionError):
+    """The page that was asked is not there any more: another is being opened."""
 
 
 class Page:
@@ -39,6 +43,8 @@ class Page:
         while True:
             found = self._next()
             if found.get("id") == self._number:
+                if "navigated" in str(found.get("error", "")):
+                    raise PageLeftError
                 assert "error" not in found, f"{method}: {found['error']}"
                 return found["result"]
 
@@ -70,12 +76,17 @@ class Page:
         return found["result"].get("value")
 
     def wait(self, condition: str) -> float:
-        """Wait until something is so; how long that took [s]."""
+        """Wait until something is so, on the next page too; how long that took [s]."""
         began = time.monotonic()
-        while not self.ask(condition):
+        while not self._so(condition):
             assert time.monotonic() - began < PATIENCE, f"never: {condition}"
             time.sleep(0.05)
         return time.monotonic() - began
+
+    def _so(self, condition: str) -> bool:
+        with suppress(PageLeftError):
+            return bool(self.ask(condition))
+        return False
 
     def picture(self, selector: str) -> np.ndarray:
         """Picture of an element (height, width, 3)."""

@@ -64,7 +64,7 @@ def test_an_app_that_is_killed_while_it_writes_leaves_a_whole_scene_and_whole_no
     with started(folder) as (_, origin, token):
         assert posted(origin, token, "scene", PAIR)["problems"] == []
         assert posted(origin, token, "scene", PAIR)["notes"]["now"] in ({}, WIDER)
-        assert posted(origin, token, "card", PAIR)["done"] == 200
+        until(lambda: posted(origin, token, "card", PAIR)["done"] == 200)
 
 
 def test_jobs_of_an_app_that_is_killed_end_and_wait_for_no_app(folder: Path) -> None:
