@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar, Final, Literal, Self, TypeVar
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, SerializeAsAny, model_validator
 
 from tol3d.assembly.grammar.features.nominal_frame import ALONG
 from tol3d.assembly.grammar.features.pattern import PatternSpec, Scattered
@@ -63,7 +63,7 @@ class FeatureSpec(Strict):
 
     kind: str
     at: Vector | None = Field(default=None, description="the middle of it; default: that of its face")
-    pattern: PatternSpec | None = Field(
+    pattern: SerializeAsAny[PatternSpec] | None = Field(
         default=None, description="rows and columns of such features, the first of them here; default: one alone"
     )
 
