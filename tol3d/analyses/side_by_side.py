@@ -23,6 +23,7 @@ from tol3d.analyses.methods_section import BuildFound, MeasureMethods, Methods, 
 from tol3d.analyses.response import Response
 from tol3d.analyses.subject import Subject
 from tol3d.numerics.arrays import Array
+from tol3d.statistics.distributions import HIGH_PROBABILITY, LOW_PROBABILITY
 from tol3d.study.effects.regions import (
     Built,
     Codes,
@@ -80,7 +81,6 @@ CONSTANT: Final = 1e-12
 """Relative difference of values that count as equal."""
 FEWEST_FITTED: Final = 100
 """Values to which a law is fitted, at least."""
-LOW, HIGH = 0.00135, 0.99865  # the fractions below -+ 3 sigma of a normal law
 
 
 class Trials(Protocol):
@@ -376,7 +376,7 @@ def _sample(column: Array, worst: WorstCase | None) -> MethodsSample:
     mean, sigma = (float(values.mean()), float(values.std(ddof=1))) if len(values) > 1 else (math.nan, math.nan)
     centred = values - mean if len(values) > 1 else values
     varies = sigma > CONSTANT * (abs(mean) or 1.0)
-    enough = len(values) * LOW >= 1.0
+    enough = len(values) * LOW_PROBABILITY >= 1.0
     beyond = 0
     if worst is not None and worst.low is not None and worst.high is not None:
         slack = CONSTANT * max(abs(worst.low.value), abs(worst.high.value))
@@ -389,8 +389,8 @@ def _sample(column: Array, worst: WorstCase | None) -> MethodsSample:
         sigma=_known(sigma),
         low_3sigma=_known(mean - 3 * sigma),
         high_3sigma=_known(mean + 3 * sigma),
-        p0_135=_known(float(np.quantile(values, LOW))) if enough else None,
-        p99_865=_known(float(np.quantile(values, HIGH))) if enough else None,
+        p0_135=_known(float(np.quantile(values, LOW_PROBABILITY))) if enough else None,
+        p99_865=_known(float(np.quantile(values, HIGH_PROBABILITY))) if enough else None,
         sample_min=_known(float(values.min())) if len(values) else None,
         sample_max=_known(float(values.max())) if len(values) else None,
         skewness=_known(float((centred**3).mean() / sigma**3)) if varies else None,
