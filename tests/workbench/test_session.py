@@ -473,7 +473,7 @@ def test_a_build_that_is_not_there_has_a_sentence_and_the_nominal_one_is_shown(o
 
 def test_while_a_slider_is_held_a_build_has_one_factor(own: Questions) -> None:
     def factors(**words: Any) -> list[float]:
-        return [state["factor"] for state in _picture(own, trial=3, **words)["builds"][1]["states"]]
+        return [state["asked"] for state in _picture(own, trial=3, **words)["builds"][1]["states"]]
 
     assert factors() == [1.0, 10.0, 100.0]
     assert factors(factor=10) == [10.0]
