@@ -28,6 +28,7 @@ const MOST_LINES = 4; // of a flag; all, and the names of tolerances, where a po
 const HEAD = 9; // pixels, of an arrow
 const ON = 0.02; // of the size of the model: how far off a feature a click may be
 const SVG = "http://www.w3.org/2000/svg";
+const DIGITS = 3; // of a factor that a build allows
 const STILL = 4; // pixels that a pointer may move in a click
 const GREY = "#b4bac0";
 const FROM = new Vector3(0.9, 0.75, 1.1);
@@ -148,12 +149,12 @@ class View {
     this.controls.addEventListener("change", () => this.draw());
   }
 
-  // Show a build by its name or its place, its deviations so many times as large, or as near to that as there is.
+  // Show a build by its name or its place, its deviations so many times as large if it allows that, else less.
   show(build, factor = 1) {
     const { builds } = this.told;
     const place = typeof build === "number" ? build : builds.findIndex((own) => own.name === build);
     if (!builds[place]) return;
-    const off = builds[place].states.map((own) => Math.abs(Math.log(own.factor / factor)));
+    const off = builds[place].states.map((own) => Math.abs(Math.log(own.asked / factor)));
     this.#shown = { build: place, state: off.indexOf(Math.min(...off)) };
     this.pose();
   }
@@ -376,9 +377,10 @@ class View {
       factor.max = states.length - 1;
       factor.value = place;
       factor.disabled = states.length < 2;
-      factor.setAttribute("aria-valuetext", `${states[place].factor} times`);
+      factor.dataset.asked = states[place].asked;
+      factor.setAttribute("aria-valuetext", `${times(states[place])} times`);
     }
-    if (number) number.value = states[place].factor;
+    if (number) number.value = times(states[place]);
     if (words) words.textContent = states[place].words;
   }
 
@@ -543,6 +545,11 @@ function sign(own) {
     add("text", { x: 8, y: 12 }, own.normalize("NFKD"));
   }
   return svg;
+}
+
+// The factor with which a build is shown, as its words have it.
+function times({ factor }) {
+  return Number(factor.toPrecision(DIGITS));
 }
 
 // A length in words, of mm.

@@ -245,6 +245,22 @@ def test_the_worst_build_in_3d_is_that_of_the_tolerances_that_are_tried(app: App
     app.told("#build", "change", "nominal")
 
 
+def test_the_number_beside_deviations_is_that_of_the_words_beneath(app: App) -> None:
+    app.load()
+    app.told("#build", "change", "trial")
+    app.page.wait("document.querySelector('#factor').max === '2'")
+    app.told("#factor", "input", 2)
+    words = app.page.ask("document.querySelector('#stage-words').textContent")
+    (factor,) = re.findall(r"magnified ([\d.]+) times, not 100", words)
+    assert app.page.ask("document.querySelector('#stage output').value") == factor
+    assert app.page.ask("document.querySelector('#factor').ariaValueText") == f"{factor} times"
+    app.told("#trial", "change", 7)
+    app.page.wait("document.querySelector('#stage-words').textContent.startsWith('trial 7;')")
+    words = app.page.ask("document.querySelector('#stage-words').textContent")
+    assert f"magnified {app.page.ask('document.querySelector(`#stage output`).value')} times, not 100" in words
+    app.told("#build", "change", "nominal")
+
+
 def test_reset_aside_and_a_reload(app: App) -> None:
     app.load()
     wider, other = {CENTRE: "x1.01"}, "lost motion"

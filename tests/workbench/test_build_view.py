@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -71,6 +72,22 @@ def test_builds_stand_as_those_of_a_run_to_the_bit(name: str, tmp_path: Path) ->
     }
     assert json.loads(json.dumps(told, allow_nan=False)) == json.loads(json.dumps(told))
     assert told["refused"] == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "allowed"), [("door", (100.0,)), ("spur_pair", (15.0, 25.0)), ("two_plates", (1.0, 2.0))]
+)
+def test_a_state_has_the_factor_that_its_words_tell(name: str, allowed: tuple[float, ...]) -> None:
+    """Parts of a door are free; teeth and pins have no room for all, and beyond what they allow nothing is tried."""
+    simulation = _simulation(name)
+    _, told = build_view(simulation, {"trial": _row(simulation)})
+    states = told["builds"][-1]["states"]
+    for state in states[1:]:
+        (words,) = re.findall(r"deviations (?:magnified )?([\d.]+) times", state["words"])
+        assert f"{state['factor']:.3g}" == words
+    assert [state["asked"] for state in states] == [own for own in (1.0, 10.0, 100.0) if own < 10.0 * allowed[-1]]
+    assert all(state["factor"] == state["asked"] for state in states[:-1])
+    assert allowed[0] <= states[-1]["factor"] <= allowed[-1]
 
 
 def test_builds_that_cannot_be_shown_say_why_and_the_others_are_there() -> None:

@@ -378,6 +378,35 @@ def test_what_ifs_outlive_the_app(own: Questions) -> None:
 NOTES = {"version": 1, "now": WIDER, "beside": [], "measure": BACKLASH}
 
 
+def test_an_app_begins_with_the_scene_that_was_opened_last(own: Questions) -> None:
+    folder = own.workspace.folder
+    (folder / "later.yaml").write_bytes((folder / SCENE).read_bytes())
+
+    def first(place: Path) -> str:
+        return str(FolderQuestions(Workspace.of(place), own.lock).folder({})["first"])
+
+    assert first(folder) == ""
+    for name in ("later.yaml", SCENE, "later.yaml"):
+        own.scene(asked() | {"scene": name})
+        assert first(folder) == name
+        assert first(folder / SCENE) == SCENE, "the one that is asked for"
+    file = own.workspace.notes_folder / "opened.json"
+    for damaged in ("", "[]", "{}", '{"version": 1, "scene": ["x"]}', '{"version": 2, "scene": "later.yaml"}'):
+        file.write_text(damaged)
+        assert first(folder) == ""
+    own.scene(asked() | {"scene": "later.yaml"})
+    (folder / "later.yaml").unlink()
+    assert first(folder) == ""
+
+
+def test_an_app_that_only_reads_notes_no_scene_that_it_opens(own: Questions) -> None:
+    reading = Questions(own.workspace, FolderLock(own.workspace.folder))
+    assert reading.read_only
+    reading.scene(asked())
+    assert own.workspace.last == ""
+    reading.close()
+
+
 @pytest.mark.parametrize(
     "damaged",
     [
@@ -473,7 +502,7 @@ def test_a_build_that_is_not_there_has_a_sentence_and_the_nominal_one_is_shown(o
 
 def test_while_a_slider_is_held_a_build_has_one_factor(own: Questions) -> None:
     def factors(**words: Any) -> list[float]:
-        return [state["factor"] for state in _picture(own, trial=3, **words)["builds"][1]["states"]]
+        return [state["asked"] for state in _picture(own, trial=3, **words)["builds"][1]["states"]]
 
     assert factors() == [1.0, 10.0, 100.0]
     assert factors(factor=10) == [10.0]

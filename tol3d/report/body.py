@@ -148,6 +148,7 @@ class World:
         marks: contacts and gaps, which a page's 3D view names too, (3,) [mm].
         features: of its parts, by name.
         measured: lines of each measure that is read in this world, by the measure's name.
+        magnify: factor of the deviations with which it is shown; None: the one that was asked for.
     """
 
     name: str
@@ -159,6 +160,7 @@ class World:
     marks: Mapping[str, Array] = field(default_factory=dict)
     features: Mapping[str, Placed] = field(default_factory=dict)
     measured: Mapping[str, tuple[MeasuredLine, ...]] = field(default_factory=dict)
+    magnify: float | None = None
 
 
 def built_body(

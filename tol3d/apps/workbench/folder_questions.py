@@ -44,7 +44,7 @@ class FolderQuestions:
         return {
             "folder": self.workspace.folder.name,
             "scenes": [*self.workspace.scenes],
-            "first": self.workspace.first,
+            "first": self.workspace.first or self.workspace.last,
             "listed": self._listed,
             "read_only": self.lock.refusal,
         }

@@ -7,6 +7,7 @@ made, from which shares of contributors come. The page names scenes by the works
 import difflib
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -85,6 +86,9 @@ class Questions:
         """A scene as the page shows it first: its text, its tree and its measures, or what is wrong with it."""
         name = str(asked["scene"])
         path, notes = self.workspace.scene(name), self.workspace.notes(name)
+        if not self.read_only and self.workspace.last != name:
+            with suppress(InputError):  # a full disk hinders nobody to look at a scene
+                self.workspace.note_opened(name)
         content = path.read_bytes()
         found: dict[str, Any] = {
             "text": content.decode("utf-8", "replace"),

@@ -6,6 +6,7 @@ The page names scenes by this list alone, never by a path. What leads out of the
 import hashlib
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +21,7 @@ from tol3d.study.runs.atomic_write import write_whole
 VERSION: Final = 1
 SUFFIXES: Final = (".yaml", ".yml")
 LARGEST_SCENE: Final = 10_000_000  # bytes
+LAST: Final = "opened.json"  # no scene's notes: their names have a scene's suffix in them
 MOST_KEPT: Final = 3
 """What-ifs beside each other."""
 
@@ -110,6 +112,24 @@ class Workspace:
         if name not in known:
             raise InputError(f"expected a scene of {self.folder.name}, got {name!r}")
         return known[name]
+
+    @property
+    def last(self) -> str:
+        """Name of the scene that was opened last; "" where none is known, or it is not there any more."""
+        with suppress(InputError, OSError, ValueError, KeyError, TypeError, RecursionError):
+            told = json.loads((self.notes_folder / LAST).read_text("utf-8"))
+            if told["version"] == VERSION and told["scene"] in self.scenes:
+                return str(told["scene"])
+        return ""
+
+    def note_opened(self, scene: str) -> None:
+        """Keep which scene was opened last.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        told = {"version": VERSION, "scene": scene}
+        written(self.notes_folder / LAST, json.dumps(told, ensure_ascii=False).encode())
 
     def notes(self, scene: str) -> Notes:
         """Moved tolerances of a scene; none where they were written by another version, or are damaged."""

@@ -95,12 +95,15 @@ class ShownAssembly:
         label: what it is.
         placed: the assembly in the trial.
         notes: notes for the user.
+        seen: the build, with its deviations as they are magnified.
+        magnify: factor of its deviations.
     """
 
     label: str
     placed: Placed
     notes: tuple[str, ...] = ()
     seen: Replay | None = None
+    magnify: float = 1.0
 
     @cached_property
     def worlds(self) -> tuple[World, ...]:
@@ -110,8 +113,7 @@ class ShownAssembly:
             return (self._world("assembly", self.placed),)
         return tuple(self._world(pose or "assembly", own) for pose, own in self._in(system.pose_names))
 
-    @staticmethod
-    def _world(name: str, placed: Placed) -> World:
+    def _world(self, name: str, placed: Placed) -> World:
         return World(
             name,
             bodies(placed),
@@ -119,6 +121,7 @@ class ShownAssembly:
             up=(0.0, 0.0, 1.0),
             features=placed.features,
             measured=placed.measured,
+            magnify=self.magnify,
         )
 
     @property
@@ -199,6 +202,7 @@ def shown(seen: Replay, label: str, *, magnify: float, notes: tuple[str, ...] = 
     Raises:
         RunError: it could not be assembled.
     """
+    used = 1.0
     if magnify != 1.0:
         seen, used = _as_large(seen, magnify)
         beyond = "" if used == magnify else f", not {magnify:g}: beyond that they cannot be assembled"
@@ -206,7 +210,7 @@ def shown(seen: Replay, label: str, *, magnify: float, notes: tuple[str, ...] = 
     placed = placed_by(seen)
     if placed is None:
         raise RunError(f"{label}: cannot be shown: {seen.status}; take another trial, or smaller deviations")
-    return ShownAssembly(label, placed, (*notes, *([RIGID] if placed.has_solids else [])), seen)
+    return ShownAssembly(label, placed, (*notes, *([RIGID] if placed.has_solids else [])), seen, used)
 
 
 def _as_large(seen: Replay, wanted: float) -> tuple[Replay, float]:

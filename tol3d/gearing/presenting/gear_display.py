@@ -200,9 +200,9 @@ class GearDisplay:
     @cached_property
     def worlds(self) -> tuple[World, ...]:
         """A world a tree of shafts, or where there are only single pairs a world a mesh."""
-        if self.trains:
-            return tuple(replace(train.world, measured=_measured(self.build, train)) for train in self.trains)
-        return tuple(replace(_pair(own), measured=_gaps(self.build, (own,))) for own in self.build.meshes)
+        trains = [(train.world, _measured(self.build, train)) for train in self.trains]
+        found = trains or [(_pair(own), _gaps(self.build, (own,))) for own in self.build.meshes]
+        return tuple(replace(world, measured=lines, magnify=self.build.magnify) for world, lines in found)
 
     @property
     def motions(self) -> tuple[str, ...]:

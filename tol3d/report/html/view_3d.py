@@ -7,6 +7,7 @@ import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence, Set
 from io import BytesIO
+from itertools import chain
 from pathlib import Path
 from typing import Any, Final
 
@@ -55,8 +56,9 @@ def view_3d(run: Run, presenter: Presenter, trials: Sequence[int] = ()) -> Marku
     model = ViewModel()
     for which in wanted:
         try:
-            displays = [*_displays(run, presenter, which)]
-            model.add(_called(which), displays, _values(run, which, displays[0][1].label))
+            displays = _displays(run, presenter, which)
+            first = next(displays)
+            model.add(_called(which), chain([first], displays), _values(run, which, first[1].label))
         except Tol3dError as error:
             if not model.builds:
                 return tag("p", f"no 3D view: {error}", class_="note")

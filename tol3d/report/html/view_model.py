@@ -26,7 +26,8 @@ class State:
     """A build as it is shown at one magnification.
 
     Args:
-        factor: of its deviations.
+        asked: factor of its deviations that was asked for.
+        factor: the one with which it is shown; lower where the build does not allow that.
         words: its measures, and notes.
         meshes, poses: of each part, which of the model's meshes, and where (16 numbers, column by column) [mm].
         names: of contacts, gaps and other places (3 numbers) [mm].
@@ -36,6 +37,7 @@ class State:
         values: of measures, in words.
     """
 
+    asked: float
     factor: float
     words: str
     meshes: tuple[int, ...]
@@ -105,7 +107,8 @@ class ViewModel:
 
         Args:
             name: of the build.
-            displays: of the build at each factor of its deviations, with its words. Of the first the world that
+            displays: of the build at each factor of its deviations that was asked for, the least first, with its words;
+                none is taken after one that the build does not allow. Of the first the world that
                 is wanted is shown, of the others that of its name.
             values: of measures, in words.
 
@@ -113,7 +116,7 @@ class ViewModel:
             Tol3dError: it has no bodies in that world; or `displays` raises it.
         """
         states, shown, parts = list[State](), self.world, self.parts
-        for factor, display, words in displays:
+        for asked, display, words in displays:
             world = _world_of(display, shown.name if shown else self.wanted)
             if world is None:
                 continue
@@ -128,7 +131,10 @@ class ViewModel:
                 for label, lines in world.measured.items()
             }
             meshes = tuple(mesh for mesh, _ in placed)
-            states.append(State(factor, words, meshes, poses, names, features, measured, values or {}))
+            factor = asked if world.magnify is None else world.magnify
+            states.append(State(asked, factor, words, meshes, poses, names, features, measured, values or {}))
+            if factor < asked:
+                break
         if not states:
             raise Tol3dError(f"{name}: there is nothing to show in 3D")
         self.world, self.parts = shown, parts

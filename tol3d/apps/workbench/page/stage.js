@@ -29,10 +29,10 @@ async function stage(held = false) {
 }
 
 function wish(held) {
-  const which = $("build").value, times = Number($("stage").querySelector('[name="times"]').value);
+  const which = $("build").value;
   return {
     ...(which === "trial" ? { trial: Number($("trial").value) || 0 } : { builds: which === "nominal" ? [] : [which] }),
-    ...(held && { factor: times }),
+    ...(held && { factor: Number($("factor").dataset.asked ?? 1) }),
     positions: positions(), world: $("world").value, known,
   };
 }
@@ -171,7 +171,7 @@ $("build").addEventListener("change", () => {
   stage();
 });
 $("factor").addEventListener("input", () => {
-  $("factor").dataset.wanted = $("stage").querySelector('[name="times"]').value;
+  $("factor").dataset.wanted = $("factor").dataset.asked;
 });
 for (const own of ["trial", "world"]) $(own).addEventListener("change", () => stage());
 $("lit").addEventListener("change", () => choose(null));
