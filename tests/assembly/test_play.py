@@ -18,11 +18,12 @@ from scipy.stats import norm
 from tol3d.assembly.model.statuses import NO_BUILD
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing import play_move
+from tol3d.assembly.placing.chords import ray, way_along
 from tol3d.assembly.placing.play_move import Engaging
 from tol3d.assembly.placing.poses import Codes
 from tol3d.assembly.placing.world import World
 from tol3d.assembly.torsors import method as torsors
-from tol3d.contact.seat import Seated, seated
+from tol3d.contact.seat import Place, Seated, seated
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
 from tol3d.study.trials.draws import drawn
 
@@ -307,6 +308,22 @@ def test_a_random_pattern_is_uniform_in_its_room(tmp_path: Path, method: str) ->
     share = np.max([np.hypot(poses[:, 0] - turn * b + u, poses[:, 1] + turn * a + v) / c for (a, b), (u, v), c in zip(
         THREE, [(0, 0.03), (-0.06, 0), (0, 0)], [0.1, 0.11, 0.05], strict=True)], axis=0)  # fmt: skip
     assert share.max() < 1 + (1e-9 if method == "analytic" else 5e-3)  # half of squared turns of 3e-3, 70 mm off
+
+
+def test_where_a_ray_is_stated_no_chord_is_swept() -> None:
+    """A pin in a hole of radius 2 mm: two of three trials state 0.3 of the way along x, one is swept to there."""
+    asked: list[int] = []
+
+    def way(place: Place, along: Array) -> Array:
+        asked.append(along.shape[1])
+        return way_along(place, along)
+
+    offsets, rows = np.zeros((1, 2, 3)), np.eye(2)[None, :, :, None] * np.ones(3)
+    uniforms = np.array([[np.nan, 0.9, np.nan], [np.nan, 0.5, np.nan], [0.65, 0.65, 0.65], [0.5, 0.5, 0.5]])
+    along, share = ray(Place(offsets, np.full((1, 3), 2.0), rows), np.eye(2), uniforms, way)
+    np.testing.assert_allclose(along, [[1.0, 1.0, 1.0], [0.0, 0.0, 0.0]], atol=1e-12)
+    np.testing.assert_allclose(share, [0.3, 0.3, 0.3], atol=1e-12)
+    assert {*asked} == {1}
 
 
 @pytest.mark.parametrize("method", METHODS)

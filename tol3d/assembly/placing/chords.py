@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.contact.programme import Programme
-from tol3d.contact.seat import Place
+from tol3d.contact.seat import Place, taken
 from tol3d.numerics.arrays import Array, times
 
 STILL: Final = 1e-9
@@ -69,23 +69,32 @@ def ray(place: Place, axes: Array, uniforms: Array, way: Callable[[Place, Array]
         uniforms: sweep by sweep (sweeps * freedoms, n); NaN of the first: the last sweep states the ray.
         way: to the limit of the clearances, from a place along directions.
     """
-    stated, size = np.isnan(uniforms[0]), len(axes)
-    gone, at, directions = np.zeros((size, uniforms.shape[1])), place, conjugate(place, axes)
-    for k, drawn in enumerate(uniforms):
-        along = directions[k % size]
-        back = way(at, -along)
-        step = ((back + way(at, along)) * drawn - back) * along
-        moved = np.stack([[_along(row, step) for row in rows] for rows in place.rows])
-        gone, at = gone + step, at._replace(offsets=at.offsets + moved)
-    gone = np.where(stated, times(axes.T, 2.0 * uniforms[-size:] - 1.0), gone)
+    gone, limit = times(axes.T, 2.0 * uniforms[-len(axes) :] - 1.0), np.ones(uniforms.shape[1])
+    drawn = np.flatnonzero(~np.isnan(uniforms[0]))
+    its = Place(*(taken(own, drawn) for own in place))
+    if len(drawn):  # a stated ray needs no sweeps
+        gone[:, drawn] = swept(its, axes, uniforms[:, drawn], way)
     square = np.zeros(uniforms.shape[1])
     for own in gone:
         square += own * own
     length = np.sqrt(square)
     along = gone / np.where(length > 0.0, length, 1.0)
-    limit = np.where(stated, 1.0, way(place, along))
+    if len(drawn):
+        limit[drawn] = way(its, along[:, drawn])
     some = (length > 0.0) & (limit > 0.0)
     return along, np.where(some, np.minimum(length / np.where(some, limit, 1.0), 1.0), 0.0)
+
+
+def swept(place: Place, axes: Array, uniforms: Array, way: Callable[[Place, Array], Array]) -> Array:
+    """Steps from the middle (freedoms, n) after all sweeps; arguments as in `ray`."""
+    gone, directions = np.zeros((len(axes), uniforms.shape[1])), conjugate(place, axes)
+    for k, drawn in enumerate(uniforms):
+        along = directions[k % len(axes)]
+        back = way(place, -along)
+        step = ((back + way(place, along)) * drawn - back) * along
+        moved = np.stack([[_along(row, step) for row in rows] for rows in place.rows])
+        gone, place = gone + step, place._replace(offsets=place.offsets + moved)
+    return gone
 
 
 def conjugate(place: Place, axes: Array) -> Sequence[Array]:
