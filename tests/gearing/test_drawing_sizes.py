@@ -43,7 +43,7 @@ def test_check_prints_sizes_nominal_and_at_the_limits(scene: str) -> None:
         span, pins = span_of(gear), pins_of(gear)
         assert span
         assert pins
-        for expected in (lambda g: g.tooth_thickness, span.size, pins.size):
+        for expected in (lambda g: g.tooth_thickness, lambda g: g.tooth_thickness_deviation, span.size, pins.size):
             cells = [own for own in next(rows).cells if isinstance(own, Shown)]
             assert [own.value for own in cells] == pytest.approx([expected(own) for own in gears], abs=1e-9)
             assert [str(own) for own in cells] == [f"{expected(own):.4f}" for own in gears]
@@ -81,7 +81,7 @@ def test_limits_of_a_span_are_those_of_the_gear_s_own_span(name: str, part: str,
         moved = replace(gear, tooth_thickness_deviation=gear.tooth_thickness_deviation + arc)
         assert Span(teeth).size(moved) - Span(teeth).size(gear) == pytest.approx(deviation, abs=1e-12)
     (table,) = (own for own in drawing_sizes(model) if isinstance(own, Table))
-    row = next(row for row in table.rows if str(row.cells[0]).startswith(f"span over {teeth} "))
+    row = next(row for row in table.rows if str(row.cells[0]).startswith(f"span W_k over {teeth} "))
     nominal, *ends = numbers(row)
     assert sorted(own - nominal for own in ends) == pytest.approx([low, high], abs=1e-12)
 

@@ -239,6 +239,24 @@ def test_a_class_of_a_drawing_is_a_value_of_a_field(tmp_path: Path) -> None:
     questions.close()
 
 
+def test_limits_of_a_size_are_the_words_of_a_field(tmp_path: Path) -> None:
+    """Of the span itself, as typed; half as wide about the middle; other sizes typed there stay so in the file."""
+    text = re.sub(
+        r"(of: pinion\n    )distribution:.*",
+        r"\1measured: {span: 4}\n    distribution: {limits: 26.76 / 26.80 mm, law: {kind: uniform}}",
+        TEXT,
+        count=1,
+    )
+    questions, line = opened(tmp_path, text), "pinion tooth thickness"
+    assert 'value="26.76 / 26.80 mm"' in questions.sliders(asked())["sliders"]
+    for words, field in (("x0.5", "26.77 / 26.79 mm"), ("26.78/26.79 mm", "26.78 / 26.79 mm")):
+        assert f'value="{field}"' in questions.sliders(asked({line: words}))["sliders"]
+        assert questions.card(asked({line: words}))["written"] == {line: field}
+        added = diff_lines(questions.keep(asked({line: words})))[1].strip("+ ")
+        assert added == f"distribution: {{limits: {field}, law: {{kind: uniform}}}}"
+    questions.close()
+
+
 def test_moves_of_what_is_no_longer_in_the_scene_are_dropped_with_a_sentence(own: Questions) -> None:
     now = {
         CENTRE: "±31 um",

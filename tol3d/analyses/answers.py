@@ -33,6 +33,7 @@ from tol3d.analyses.side_by_side import trials_of
 from tol3d.analyses.stated_changes import change_of, changed, factor_of, slips
 from tol3d.analyses.stated_classes import sizes_of
 from tol3d.analyses.stated_limits import limits_of_text
+from tol3d.analyses.stated_sizes import nominals_of
 from tol3d.analyses.subject import Subject, subject_of
 from tol3d.analyses.sweep_table import sweep_report, whole_table
 from tol3d.analyses.tolerance_effects import Effects
@@ -263,7 +264,8 @@ def what_if(
     """
     with _analysed(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (analysed, response, tell):
         sizes = sizes_of(analysed.scene, analysed.simulation.lines)
-        changes = [change_of(response, text, sizes) for text in _texts(set)]
+        nominals = nominals_of(analysed.scene, analysed.simulation.lines)
+        changes = [change_of(response, text, sizes, nominals) for text in _texts(set)]
         changes += [factor_of(response, text) for text in _texts(factor)]
         others = [limits_of_text(response, text) for text in _texts(limits)]
         warnings = tuple(slips(response, changed(response, changes)))

@@ -7,11 +7,13 @@ from typing import Final
 
 from tol3d.analyses.response import Response
 from tol3d.analyses.stated_classes import NO_SIZES, class_limits, is_class
+from tol3d.analyses.stated_sizes import NO_NOMINALS, deviations_of
 from tol3d.errors import InputError
 from tol3d.scene.nearest import hint
 from tol3d.statistics.distributions import Distribution
 from tol3d.statistics.distributions.base import Stays
 from tol3d.statistics.distributions.drawn import limits_written
+from tol3d.statistics.distributions.size_limits import sizes_written
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.draw import Draw, component_sigmas
 from tol3d.study.system.other_laws import Zoned
@@ -42,13 +44,19 @@ class Change:
     of_class: str = ""
 
 
-def change_of(response: Response, text: str, sizes: Mapping[str, Quantity] = NO_SIZES) -> Change:
-    """Change by `--set NAME=VALUE`: `±10um`, `+0.02/0 mm`, `-5 um..+10 um`, `5 um`, or `H7` of a known size.
+def change_of(
+    response: Response,
+    text: str,
+    sizes: Mapping[str, Quantity] = NO_SIZES,
+    nominals: Mapping[str, float] = NO_NOMINALS,
+) -> Change:
+    """Change by `--set NAME=VALUE`: `±10um`, `+0.02/0 mm`, `-5 um..+10 um`, `5 um`, `H7` of a known size, or sizes.
 
     Args:
         response: with the tolerances of the scene.
         text: as described.
         sizes: nominal ones by line, at which a class is read.
+        nominals: of measured sizes by line [mm], of which `23.349 / 23.386 mm` are limits.
 
     Raises:
         InputError: no such contributor, or no such value of it.
@@ -58,6 +66,9 @@ def change_of(response: Response, text: str, sizes: Mapping[str, Quantity] = NO_
     try:
         if is_class(value):
             return Change(name, limits=class_limits(value, sizes.get(name)), of_class=value)
+        if sizes_written(value) is not None:
+            law = response.drawn_by(contributor.name).distribution
+            return Change(name, limits=deviations_of(law, value, nominals.get(name)))
         pair = limits_written(value)
     except InputError as error:
         raise InputError(f"--set {text!r}: {error}") from None

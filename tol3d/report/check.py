@@ -15,14 +15,17 @@ from tol3d.report.system_check import law_name
 from tol3d.scene.bases import laws_in
 from tol3d.scene.schema import Scene
 from tol3d.statistics.distributions.base import DistributionSpec
+from tol3d.statistics.distributions.drawn import typed_sizes
 from tol3d.statistics.distributions.unsized import STANDARDS
 from tol3d.statistics.standards import iso_2768
 from tol3d.study.runs.summary.shows import Shows
 from tol3d.study.system.faults import faults_of
 from tol3d.study.trials.correlated import correlation_warnings
 from tol3d.study.trials.simulation import Simulation
+from tol3d.units import Quantity
 
 MOST_ROWS: Final = 60  # of a table of the scene's own entries
+DIGITS: Final = 3  # of deviations in um that follow from sizes
 LEFT_OUT: Final = "rows that are left out: check --out FILE.csv writes all of it"
 
 
@@ -124,6 +127,8 @@ def _drawn(scene: Scene) -> Iterator[tuple[str, DistributionSpec]]:
 def _row(law: DistributionSpec, name: str) -> DrawnRow:
     """Its limits as drawn, and as numbers, with the signs of their units."""
     given = law.quantities()
+    if typed_sizes(law.drawn) is not None:  # their deviations have the digits of the nominal size
+        given = {name: Quantity(round(own.number, DIGITS), own.unit) for name, own in given.items()}
     drawn, lower, upper = (signed_units(str(text)) for text in (_told(law.drawn), given["lower"], given["upper"]))
     return DrawnRow(drawn, lower, upper, name)
 

@@ -215,17 +215,21 @@ class ToleranceSpec(ToleranceEntry):
         return ((("distribution", field), name) for field, name in self.distribution.file_names())
 
     def size(self, standard: str, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> float | None:
-        """Size by which a standard of STANDARDS gives the deviation limits [mm]; None where it gives it none."""
+        """Size by which a standard of STANDARDS gives the deviation limits [mm]; None where it gives it none.
+
+        Raises:
+            InputError: it has no such size.
+        """
         return None
 
     @override
     def sized(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Self:
         law = self.distribution
-        size = self.size(law.standard, parts, moves) if isinstance(law, UnsizedSpec) else None
-        if not isinstance(law, UnsizedSpec) or size is None:
+        if not isinstance(law, UnsizedSpec):
             return self
         try:
-            return self.model_copy(update={"distribution": law.of(size)})
+            size = self.size(law.standard, parts, moves)
+            return self if size is None else self.model_copy(update={"distribution": law.of(size)})
         except InputError:  # `loose_ends` says why
             return self
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from stat import S_ISREG
 
-from tol3d.errors import SceneError
+from tol3d.errors import InputError, SceneError
 from tol3d.scene.bases import ToleranceSpec, laws_in
 from tol3d.scene.entry import Entry, Reference, Unusable
 from tol3d.scene.nearest import hint
@@ -14,7 +14,7 @@ from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.figures import quantities_in
 from tol3d.scene.published.whole import PublishedWhole
 from tol3d.scene.schema import SECTIONS, Scene
-from tol3d.statistics.distributions.unsized import STANDARDS, UnsizedSpec
+from tol3d.statistics.distributions.unsized import SIZE, STANDARDS, UnsizedSpec
 from tol3d.units import expectation, shown
 
 Refusal = tuple[KeyPath, str]
@@ -124,9 +124,12 @@ def _unsized(scene: Scene) -> Iterator[Refusal]:
                 continue
             sentence, place = f"expected {STANDARDS[law.standard].of}, got another deviation", path
             if isinstance(entry, ToleranceSpec) and law is entry.distribution:
-                place = (*path, "distribution", law.standard)
-                size = entry.size(law.standard, scene.parts, scene.moves)
-                sentence = sentence if size is None else law.refusal(size)
+                place = (*path, "distribution", *(() if law.standard == SIZE else (law.standard,)))
+                try:
+                    size = entry.size(law.standard, scene.parts, scene.moves)
+                    sentence = sentence if size is None else law.refusal(size)
+                except InputError as error:
+                    sentence = str(error)
             yield place, sentence
 
 

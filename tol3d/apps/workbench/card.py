@@ -15,6 +15,7 @@ from tol3d.analyses.scope import Scope
 from tol3d.analyses.stated_changes import told
 from tol3d.analyses.stated_classes import class_words, is_class, neighbours
 from tol3d.analyses.stated_limits import FIELDS, NONE, changeable
+from tol3d.analyses.stated_sizes import sizes_of_law
 from tol3d.apps.workbench.session import LIMITS, Evaluated, Session
 from tol3d.apps.workbench.workspace import WhatIf
 from tol3d.errors import InputError
@@ -270,7 +271,10 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
     if now_class and size:
         words.insert(0, tag("span", class_words(now_class, size), class_="class-words"))
     offered = neighbours(now_class or own_class, size) if size else ()
-    scene_words, listed = own_class or written(contributor, draw), "-".join(("classes", "of", *line.split()))
+    scene_words, listed = (
+        own_class or session.typed.get(line) or written(contributor, draw),
+        "-".join(("classes", "of", *line.split())),
+    )
     if share is not None:
         words.append(tag("span", f"{percent_text(share)} %", class_="share"))
     ends = _ends(scope)
@@ -280,7 +284,9 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
     else:
         low, high = ends
         at = round(math.log(_factor(draw, other)) / math.log(STEP))
-        now_words = now_class or (written(contributor, other) if moved else scene_words)
+        now_words = scene_words
+        if moved:
+            now_words = now_class or _sizes(session, line, other) or written(contributor, other)
         inside.append(
             tag(
                 "div",
@@ -317,13 +323,20 @@ def written_words(session: Session, now: WhatIf) -> Mapping[str, str]:
             found[line] = words
             continue
         name = response.lines[line][0]
-        found[line] = _class(words) or written(known[name], response.drawn_by(name))
+        own = response.drawn_by(name)
+        found[line] = _class(words) or _sizes(session, line, own) or written(known[name], own)
     return found
 
 
 def _class(words: str) -> str:
     """The class of ISO 286 that a change states; "" for none."""
     return words.strip() if is_class(words) else ""
+
+
+def _sizes(session: Session, line: str, draw: Draw) -> str | None:
+    """Limits of a measured size, in the form in which the scene has them; None where it has none."""
+    typed = session.typed.get(line)
+    return None if typed is None else sizes_of_law(draw.distribution, typed, session.nominals[line])
 
 
 def _why(scope: Scope) -> str | None:

@@ -24,6 +24,7 @@ from tol3d.analyses.results import pilots_of, results_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
 from tol3d.analyses.stated_classes import classes_of, sizes_of
 from tol3d.analyses.stated_limits import OtherLimits, limited, limits_of_text
+from tol3d.analyses.stated_sizes import nominals_of, typed_of
 from tol3d.apps.workbench.words import OPTION
 from tol3d.apps.workbench.workspace import WhatIf, digest
 from tol3d.errors import InputError
@@ -290,13 +291,23 @@ class Session:
     def _change(self, line: str, words: str) -> Change:
         if words.startswith("x"):
             return _in_a_page(factor_of, self.response, f"{line}={words.removeprefix('x')}")
-        read = partial(change_of, sizes=self.sizes)
+        read = partial(change_of, sizes=self.sizes, nominals=self.nominals)
         return _in_a_page(read, self.response, f"{line}={words}")
 
     @cached_property
     def sizes(self) -> Mapping[str, Quantity]:
         """Nominal sizes by line, at which tolerance classes are read."""
         return sizes_of(self.scene, self.simulation.lines)
+
+    @cached_property
+    def nominals(self) -> Mapping[str, float]:
+        """Nominal values of measured sizes by line [mm], such as of a span."""
+        return nominals_of(self.scene, self.simulation.lines)
+
+    @cached_property
+    def typed(self) -> Mapping[str, str]:
+        """Limits of measured sizes as the scene has them, by line."""
+        return typed_of(self.scene, self.simulation.lines)
 
     @cached_property
     def classes(self) -> Mapping[str, str]:

@@ -1,5 +1,6 @@
 """Scene to model: text becomes meaning, units become mm and rad, gears become geometry or are refused."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Final
@@ -34,14 +35,18 @@ from tol3d.gearing.model.trains import (
 )
 from tol3d.gearing.shafts import Arm, Mesh, Train
 from tol3d.gears import LEFT, RIGHT, Gear, InternalGear, SpurGear
+from tol3d.gears.cylindrical_gear import CylindricalGear
+from tol3d.gears.tooth_measures import Span, ToothMeasure
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, larger_end, warned
 from tol3d.scene.place import KeyPath
-from tol3d.statistics.distributions.drawn import nominal_size
+from tol3d.statistics.distributions.drawn import nominal_size, typed_sizes
+from tol3d.statistics.distributions.size_limits import sizes_written
 
 THICKNESS: Final = Implausible(0.1, "state the deviation of the thickness from nominal, and check the unit")
 
 WHOLE_SIZE: Final = 0.5  # share of a nominal size from which a "deviation" is the size itself
+FOREIGN_SIZE: Final = 0.25  # pitches of the arc; no teeth are thinned by as much
 SAME_NOMINAL: Final = 0.005  # mm; a drawing rounds a size over pins to one hundredth at the coarsest
 
 
@@ -63,7 +68,8 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
         arc = gear.thickness_radius / gear.section_arm if spec.is_normal else 1.0
         path: KeyPath = ("tolerances", name, "distribution")
         sign = spec.sign_in(ring=isinstance(gear, InternalGear))
-        if sentence := _whole_sizes(spec, scene, "tooth thickness", gear.section_thickness):
+        sentence = _whole_sizes(spec, scene, "tooth thickness", gear.section_thickness)
+        if sentence and typed_sizes(spec.distribution.drawn) is None:
             raise scene.refuse(path, sentence)
         thinnest, left = min(sign * extreme for extreme in law.extremes) * arc, gear.section_thickness
         if -thinnest >= gear.section_tip:
@@ -72,11 +78,15 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
             raise scene.refuse(path, f"{words}; {THICKNESS.advice}")
         if min(sign * extreme for extreme in law.extremes) > 0.0:
             words = "expected teeth that are thinner than nominal, got thicker ones in every build"
-            yield warned(
-                scene.origin,
-                path,
-                f"{words}; allowances of a drawing are {'positive' if sign < 0.0 else 'negative'}: check the sign",
-            )
+            grows = isinstance(gear, InternalGear) and spec.over is not None  # as the teeth get thinner
+            advice = f"allowances of a drawing are {'positive' if grows else 'negative'}: check the sign"
+            is_typed = typed_sizes(spec.distribution.drawn) is not None
+            if is_typed and spec.over is not None and isinstance(gear, CylindricalGear):
+                side = f"{'larger' if grows else 'smaller'} than the nominal {spec.over.size(gear):.4f} mm"
+                advice = f"sizes of a drawing are {side}: look at k, pins, x and teeth"
+            yield warned(scene.origin, path, f"{words}; {advice}")
+        if sentence := _reversed(spec):
+            yield warned(scene.origin, path, sentence)
         if sentence := _other_nominal(spec, gear):
             yield warned(scene.origin, path, sentence)
         if sentence := THICKNESS.sentence(f"the tooth thickness of {spec.of!r}", left, larger_end(law) * arc):
@@ -98,8 +108,12 @@ def refuse_other_measure(scene: Scene, name: str, spec: ToothThicknessSpec, gear
     try:
         measure = spec.measured.measure
         measure.require_reach(gear)
-        if sentence := _whole_sizes(spec, scene, measure.words, measure.size(gear)):
-            raise scene.refuse(("tolerances", name, "distribution"), sentence)
+        for sentence in (
+            _another_measure(spec, measure, gear),
+            _whole_sizes(spec, scene, measure.words, measure.size(gear)),
+        ):
+            if sentence:
+                raise scene.refuse(("tolerances", name, "distribution"), sentence)
         for size in spec.distribution.resolve(scene.files).extremes:
             arc = measure.thickness(gear, measure.size(gear) + size) - gear.tooth_thickness
             measure.require_reach(replace(gear, tooth_thickness_deviation=gear.tooth_thickness_deviation + arc))
@@ -113,10 +127,47 @@ def _whole_sizes(spec: ToothThicknessSpec, scene: Scene, words: str, nominal: fl
     if low < WHOLE_SIZE * nominal:
         return ""
     deviations = f"{low - nominal:+.4g}/{high - nominal:+.4g} mm".replace("-0/", "0/").replace("+0/", "0/")
+    typed = (
+        "" if spec.over is None or words != spec.over.words else f", as limits of the size {low:.7g} / {high:.7g} mm"
+    )
     return (
         f"expected deviations from the nominal {words} of {nominal:.4f} mm, "
-        f"got {low:.7g} to {high:.7g} mm, which are whole sizes; as deviations they are {deviations}"
+        f"got {low:.7g} to {high:.7g} mm, which are whole sizes; as deviations they are {deviations}{typed}"
     )
+
+
+def _another_measure(spec: ToothThicknessSpec, measure: ToothMeasure, gear: CylindricalGear) -> str:
+    """Sentence for limits of a size that lie more than a quarter of a pitch off the nominal one; "" for others.
+
+    Each tooth more adds a pitch of the base circles to a span.
+
+    Raises:
+        GeometryError: pins are never at such a size.
+    """
+    text = typed_sizes(spec.distribution.drawn)
+    pair = sizes_written(text)
+    if pair is None:
+        return ""
+    middle, nominal = (pair[0].internal + pair[1].internal) / 2, measure.size(gear)
+    pitch = 2 * math.pi * gear.thickness_radius / gear.teeth
+    if abs(measure.thickness(gear, middle) - gear.tooth_thickness) < FOREIGN_SIZE * pitch:
+        return ""
+    words = f"expected limits near the nominal {measure.words} of {nominal:.4f} mm, got {text}"
+    if isinstance(measure, Span):
+        teeth = measure.teeth + round((middle - nominal) / (2 * math.pi * gear.section_arm / gear.teeth))
+        if teeth != measure.teeth and teeth > 0:
+            other = Span(teeth)
+            return f"{words}, which is near the {other.words}, {other.size(gear):.4f} mm; look at k"
+    return f"{words}; look at teeth, module and profile shift, and at what the size is over"
+
+
+def _reversed(spec: ToothThicknessSpec) -> str:
+    """Sentence for limits of a size of which the upper one stands first; "" for others."""
+    text = typed_sizes(spec.distribution.drawn)
+    pair = sizes_written(text)
+    if pair is None or pair[0].internal < pair[1].internal:
+        return ""
+    return f"expected the lower limit of the size first, got {text}; read as {pair[1]} to {pair[0]}"
 
 
 def _other_nominal(spec: ToothThicknessSpec, gear: Gear) -> str:

@@ -5,11 +5,10 @@ from functools import singledispatch
 from typing import Final
 
 from tol3d.errors import GeometryError
+from tol3d.gearing.grammar.cylindrical import CylindricalSpec, cylindrical_gear_of
 from tol3d.gearing.grammar.moves import BevelMeshSpec, GearMeshSpec, MeshSpec
-from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, HelicalGearSpec, InternalGearSpec, SpurGearSpec
+from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, InternalGearSpec
 from tol3d.gears import (
-    LEFT_HAND,
-    RIGHT_HAND,
     BevelGear,
     BevelPair,
     Gear,
@@ -110,44 +109,11 @@ def cylindrical_gear(scene: Scene, name: str) -> SpurGear | InternalGear:
     """
     spec = scene.parts[name]
     try:
-        if isinstance(spec, SpurGearSpec | HelicalGearSpec):
-            return _spur_gear(spec)
-        if isinstance(spec, InternalGearSpec):
-            return _internal_gear(spec)
+        if isinstance(spec, CylindricalSpec):
+            return cylindrical_gear_of(spec)
     except GeometryError as error:
         raise scene.refuse(("parts", name), str(error)) from None
     raise TypeError(f"{name} is no spur gear")
-
-
-def _spur_gear(spec: SpurGearSpec | HelicalGearSpec) -> SpurGear:
-    helix = (spec.helix_angle.internal, spec.hand) if isinstance(spec, HelicalGearSpec) else (0.0, "right")
-    return SpurGear(
-        teeth=spec.teeth,
-        module=spec.module.internal,
-        pressure_angle=spec.pressure_angle.internal,
-        face_width=spec.face_width.internal,
-        profile_shift=spec.profile_shift,
-        addendum=spec.addendum,
-        dedendum=spec.dedendum,
-        root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
-        bore=internal(spec.bore),
-        helix_angle=helix[0],
-        hand=LEFT_HAND if helix[1] == "left" else RIGHT_HAND,
-    )
-
-
-def _internal_gear(spec: InternalGearSpec) -> InternalGear:
-    return InternalGear(
-        teeth=spec.teeth,
-        module=spec.module.internal,
-        pressure_angle=spec.pressure_angle.internal,
-        face_width=spec.face_width.internal,
-        profile_shift=spec.profile_shift,
-        addendum=spec.addendum,
-        dedendum=spec.dedendum,
-        root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
-        outer_diameter=None if spec.outer_diameter is None else spec.outer_diameter.internal,
-    )
 
 
 SHARP_TIP: Final = 0.2  # normal modules; hardened teeth chip where their tips are thinner (ISO 6336-1 asks for as much)

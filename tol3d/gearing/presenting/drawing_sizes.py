@@ -17,10 +17,11 @@ from tol3d.statistics.distributions import DeviationLaw
 from tol3d.study.runs.summary.shows import Shows
 
 MEANING = (
-    "span and pins are those of the scene, or chosen to touch near the reference circle shifted by x m; their limits "
-    "follow from the tooth thickness (the sum of its tolerances), without errors of measurement; for an internal gear "
-    "over spaces and between pins"
+    "E_sni and E_sns (A_sni and A_sne of DIN 3967): allowances of the arc, the sum of its tolerances; span and pins "
+    "are those of the scene, or chosen to touch near the reference circle shifted by x m; their limits follow from the "
+    "allowances, without errors of measurement; for an internal gear over spaces and between pins"
 )
+ALLOWANCES: Final = "E_sni, E_sns (A_sni, A_sne)"
 BACKLASH_MEANING: Final = (
     "j_bn normal, j_wt and j_t as arcs on the working and the reference circles, j_r radial. theoretical: by thickness "
     "and centre distance; acceptance: by all tolerances but temperature; operating: by all. least, largest: the worst "
@@ -97,6 +98,7 @@ def _rows(name: str, gear: Gear, stated: Sequence[Thickness]) -> Iterator[tuple[
         words = "arc s_n, normal section"
     yield _row(name, words, [gear.section_thickness + deviation for deviation in deviations])
     if isinstance(gear, SpurGear | InternalGear):
+        yield _row("", ALLOWANCES, deviations)
         for measure in _measures(gear, [own.over for own in stated if own.over is not None]):
             yield _row("", _words(measure, gear), [_size(measure, gear, deviation) for deviation in deviations])
 
@@ -117,7 +119,7 @@ def _chosen_pins(gear: SpurGear | InternalGear) -> Iterator[ToothMeasure | None]
 
 
 def _words(measure: ToothMeasure, gear: SpurGear | InternalGear) -> str:
-    words = measure.words
+    words = measure.words.replace("span", "span W_k").replace("size", "size M_dK")
     if isinstance(gear, InternalGear):
         words = (
             words.replace(" teeth", " spaces")

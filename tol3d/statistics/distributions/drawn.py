@@ -1,4 +1,4 @@
-"""A law by its limits as a drawing writes them: `±0.1 mm`, `40.1 mm +0.12/0`, `{fit: H7, of: 32 mm}`.
+"""A law by its limits as a drawing writes them: `±0.1 mm`, `40.1 mm +0.12/0`, `23.3 / 23.4 mm`, `{fit: H7, of: 32 mm}`.
 
 What is written becomes one of the kinds of law, by the law that is named beside it or by the default law of the scene;
 it is kept as `drawn` of that law, so that the scene is dumped as it was written.
@@ -17,7 +17,8 @@ from pydantic_core import PydanticCustomError
 from tol3d.errors import InputError
 from tol3d.statistics.distributions.base import Distribution, DistributionSpec
 from tol3d.statistics.distributions.default_law import LimitLaw, StatedLimitLaw, UniformBetween
-from tol3d.statistics.distributions.unsized import STANDARDS, UnsizedSpec
+from tol3d.statistics.distributions.size_limits import LONGEST, NUMBER, UNIT, resized, size_limits, sizes_written
+from tol3d.statistics.distributions.unsized import SIZE, STANDARDS, UnsizedSpec
 from tol3d.statistics.standards import din_3967, iso_286, iso_1328_2, iso_2768
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Positive, Quantity, shown
@@ -28,15 +29,12 @@ KEYS: Final = ("fit", "general", "iso_1328_2", "iso_17485", "din_3967", "din_396
 """Keys, one of which states the form of limits, where no kind of law is stated."""
 PLUS_MINUS: Final = ("±", "+-", "+/-")
 MINUS: Final = str.maketrans({"−": "-"})  # as drawings are copied
-NUMBER: Final = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-UNIT: Final = r"[^\s\d.,+±/-][^\s,+±/-]*(?:/[^\s\d,+±/-]+)*"
 NOMINAL: Final = rf"(?:(?P<nominal>{NUMBER})\s*(?P<nominal_unit>{UNIT})?\s*)?"
 SYMMETRIC: Final = re.compile(rf"\s*{NOMINAL}(?P<sign>±|\+-|\+/-)\s*(?P<size>{NUMBER})\s*(?P<unit>{UNIT})?\s*")
 TWO: Final = re.compile(
     rf"\s*{NOMINAL}(?P<one>[+-]{NUMBER}|0)\s*(?P<one_unit>{UNIT})?\s*/\s*(?P<other>[+-]{NUMBER}|0)\s*(?P<unit>{UNIT})?\s*"
 )
 WRITTEN: Final = 'limits such as "±0.1 mm", "40.1 mm +0.12/0" or [-19 um, -30 um]'
-LONGEST: Final = 100  # characters
 
 _default: ContextVar[LimitLaw | None] = ContextVar("default_law", default=None)
 
@@ -156,7 +154,8 @@ def _read(given: Any) -> LimitLaw | None:
 def is_drawn(value: Any) -> bool:
     """True if a value is limits as a drawing writes them, right or wrong."""
     if isinstance(value, str):
-        return any(sign in value for sign in PLUS_MINUS) or "/" in value or _is_series(value)
+        signs = any(sign in value for sign in PLUS_MINUS) or "/" in value
+        return signs or _is_series(value) or sizes_written(value) is not None
     if isinstance(value, dict):
         return "kind" not in value and any(key in value for key in KEYS)
     return isinstance(value, list | tuple)
@@ -186,11 +185,30 @@ def drawn_law(value: Any) -> DistributionSpec:
         if isinstance(stated, Sized):
             standard = next(key for key in STANDARDS if key in value)
             return UnsizedSpec(standard=standard, word=value[standard], law=_given(law), written=_as_text(value))
+        if (text := typed_sizes(value)) is not None:
+            return _of_sizes(text, value, law, "limits")
         lower, upper = _limits(stated)
+    elif typed_sizes(value) is not None:
+        return _of_sizes(value, value, law, "")
     else:
         lower, upper = _written(value, "")
     own = _given(law)
     return own.between(lower, upper).as_drawn(_as_text(value), own)
+
+
+def typed_sizes(written: Any) -> str | None:
+    """The text of limits of a size itself, such as `23.349 / 23.386 mm`; None of others."""
+    text = written.get("limits") if isinstance(written, dict) else written
+    return text if isinstance(text, str) and sizes_written(text) is not None else None
+
+
+def _of_sizes(text: str, value: Any, law: LimitLaw | None, field: str) -> UnsizedSpec:
+    try:
+        size_limits(text, 0.0)
+    except InputError as error:
+        expected, _, got = str(error).removeprefix("expected ").partition(", got ")
+        raise refused(field, expected, got) from None
+    return UnsizedSpec(standard=SIZE, word=text, law=_given(law), written=_as_text(value))
 
 
 def _given(law: LimitLaw | None) -> LimitLaw:
@@ -214,9 +232,21 @@ def restated(spec: DistributionSpec, law: Distribution) -> DistributionSpec:
     if between is None:
         return spec.stating(law)
     told = spec.numbers(law)
+    if (text := typed_sizes(spec.drawn)) is not None:
+        own = resized(text, *(told[end] + nominal_of(spec) for end in ("lower", "upper")))
+        ends = (spec.quantities()[end].like(told[end]) for end in ("lower", "upper"))
+        drawn = {**spec.drawn, "limits": own} if isinstance(spec.drawn, dict) else own
+        return between.between(*ends).as_drawn(drawn, between)
     written = rewritten(spec.drawn, told["lower"], told["upper"])
     limits = written["limits"] if isinstance(written, dict) else written
     return between.between(*_written(limits, "")).as_drawn(written, between)
+
+
+def nominal_of(spec: DistributionSpec) -> float:
+    """The nominal size [mm] from which a law by limits of a size counts."""
+    pair = sizes_written(typed_sizes(spec.drawn))
+    assert pair is not None
+    return min(own.internal for own in pair) - spec.quantities()["lower"].internal
 
 
 def rewritten(written: Any, lower: float, upper: float) -> Any:

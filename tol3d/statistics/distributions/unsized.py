@@ -1,4 +1,7 @@
-"""A law by a class of which the limits depend on a size that only the scene knows, such as DIN 3967 of a gear."""
+"""A law by a class of which the limits depend on a size that only the scene knows, such as DIN 3967 of a gear.
+
+Limits of a size itself are such a class: its deviations follow from the nominal size.
+"""
 
 from collections.abc import Callable, Mapping
 from typing import Any, Final, Literal, NamedTuple
@@ -9,6 +12,7 @@ from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.statistics.distributions.base import Distribution, DistributionSpec
 from tol3d.statistics.distributions.default_law import LimitLaw
+from tol3d.statistics.distributions.size_limits import size_limits
 from tol3d.statistics.standards import din_3967
 from tol3d.statistics.standards.iso_286 import Limits
 from tol3d.units import Quantity
@@ -21,9 +25,16 @@ class Standard(NamedTuple):
     of: str
 
 
+SIZE: Final = "size"
+"""The standard of limits of a size itself."""
 STANDARDS: Final[Mapping[str, Standard]] = {
     "din_3967": Standard(din_3967.thickness, "a tooth_thickness of a cylindrical gear, measured: arc"),
     "din_3964": Standard(din_3967.centre_distance, "a centre_distance of a mesh that states its own"),
+    SIZE: Standard(
+        size_limits,
+        "a tooth_thickness of a cylindrical gear, measured: {span: …}, {pins: …} or {balls: …} (limits of a deviation "
+        "have signs, as in +0.12/0 mm)",
+    ),
 }
 
 
@@ -34,7 +45,7 @@ class UnsizedSpec(DistributionSpec):
     standard: str
     word: str
     law: LimitLaw
-    written: dict[str, Any]
+    written: Any
 
     def of(self, size: float) -> DistributionSpec:
         """The law at a size [mm].

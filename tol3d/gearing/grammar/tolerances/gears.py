@@ -8,6 +8,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from typing_extensions import override
 
 from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
+from tol3d.gearing.grammar.cylindrical import CylindricalSpec, cylindrical_gear_of
 from tol3d.gearing.grammar.parts import (
     ExternalGearSpec,
     GearSpec,
@@ -24,6 +25,7 @@ from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
 from tol3d.statistics.distributions.derived import Scale
+from tol3d.statistics.distributions.unsized import SIZE
 from tol3d.strict import Strict, refused
 from tol3d.units import Dimension
 
@@ -179,7 +181,8 @@ class ToothThicknessSpec(GearToleranceSpec):
     tooth grows along its normals, and that of a ring, over spaces, shrinks by it; `{pins: 3.5 mm}` by the size over
     two pins or balls, of which the arc of each trial is the exact inverse. A bevel tooth is thinned in
     proportion along its face (the flank is turned), or by the same normal offset everywhere; on a spur gear that is
-    the same. `{din_3967: cd25}` as its distribution is the arc's limits of a cylindrical gear.
+    the same. `{din_3967: cd25}` as its distribution is the arc's limits of a cylindrical gear; `23.349 / 23.386 mm`
+    are limits of the measured size itself, of a span, pins or balls.
     """
 
     kind: Literal["tooth_thickness"]
@@ -200,6 +203,8 @@ class ToothThicknessSpec(GearToleranceSpec):
     @override
     def size(self, standard: str, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> float | None:
         gear = parts.get(self.of)
+        if standard == SIZE and self.over is not None and isinstance(gear, CylindricalSpec):
+            return self.over.size(cylindrical_gear_of(gear))
         if standard != "din_3967" or self.measured != "arc":
             return None
         if not isinstance(gear, ExternalGearSpec | InternalGearSpec):

@@ -1,0 +1,46 @@
+"""Cylindrical gears of the parts of a scene, without what other entries make of them."""
+
+from tol3d.gearing.grammar.parts import HelicalGearSpec, InternalGearSpec, SpurGearSpec
+from tol3d.gears import LEFT_HAND, RIGHT_HAND, InternalGear, SpurGear
+
+CylindricalSpec = SpurGearSpec | HelicalGearSpec | InternalGearSpec
+
+
+def cylindrical_gear_of(spec: CylindricalSpec) -> SpurGear | InternalGear:
+    """The nominal gear of a part.
+
+    Raises:
+        GeometryError: it cannot be made.
+    """
+    return _internal_gear(spec) if isinstance(spec, InternalGearSpec) else _spur_gear(spec)
+
+
+def _spur_gear(spec: SpurGearSpec | HelicalGearSpec) -> SpurGear:
+    helix = (spec.helix_angle.internal, spec.hand) if isinstance(spec, HelicalGearSpec) else (0.0, "right")
+    return SpurGear(
+        teeth=spec.teeth,
+        module=spec.module.internal,
+        pressure_angle=spec.pressure_angle.internal,
+        face_width=spec.face_width.internal,
+        profile_shift=spec.profile_shift,
+        addendum=spec.addendum,
+        dedendum=spec.dedendum,
+        root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
+        bore=0.0 if spec.bore is None else spec.bore.internal,
+        helix_angle=helix[0],
+        hand=LEFT_HAND if helix[1] == "left" else RIGHT_HAND,
+    )
+
+
+def _internal_gear(spec: InternalGearSpec) -> InternalGear:
+    return InternalGear(
+        teeth=spec.teeth,
+        module=spec.module.internal,
+        pressure_angle=spec.pressure_angle.internal,
+        face_width=spec.face_width.internal,
+        profile_shift=spec.profile_shift,
+        addendum=spec.addendum,
+        dedendum=spec.dedendum,
+        root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
+        outer_diameter=None if spec.outer_diameter is None else spec.outer_diameter.internal,
+    )
