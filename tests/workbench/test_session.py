@@ -21,7 +21,7 @@ from tol3d.apps.workbench.folder_questions import FolderQuestions
 from tol3d.apps.workbench.place import APP, FolderLock
 from tol3d.apps.workbench.questions import Questions, StaleError
 from tol3d.apps.workbench.session import NoEstimate, Turn
-from tol3d.apps.workbench.workspace import Workspace
+from tol3d.apps.workbench.workspace import MOST_UNDONE, Workspace
 from tol3d.numerics.arrays import Array
 from tol3d.study.runs.summary.judged import JudgedMeasure
 from tol3d.study.runs.summary.sample import CurveSample, Sample
@@ -264,12 +264,14 @@ def test_moves_of_what_is_no_longer_in_the_scene_are_dropped_with_a_sentence(own
         "limits: lost motion": "..9 arcmin",
         "wheel eccentricity": "x2",
     }
-    own.notes(asked(now, beside=[{CENTRE: "x2"}, {"bearing clearance": "x1.05"}], measure=MOTION))
+    beside: list[dict[str, str]] = [{CENTRE: "x2"}, {"bearing clearance": "x1.05"}]
+    own.notes(asked(now, beside=beside, past=[{}, *beside], measure=MOTION))
     text = TEXT.replace("  centre distance:", "  distance of centres:").replace("  lost motion:", "  motion lost:")
     path_of(own).write_text(text, "utf-8")
     found = own.scene(asked())
     assert found["notes"]["now"] == {"bearing clearance": "x1.1", "wheel eccentricity": "x2"}
     assert found["notes"]["beside"] == [{"bearing clearance": "x1.05"}]
+    assert found["notes"]["past"] == [{}, {"bearing clearance": "x1.05"}]
     assert found["dropped"] == [
         "centre distance is no longer in the scene: its move was dropped.",
         "lost motion is no longer in the scene: its move was dropped.",
@@ -386,10 +388,16 @@ def test_a_second_app_only_reads(own: Questions) -> None:
 
 def test_what_ifs_outlive_the_app(own: Questions) -> None:
     beside = [{CENTRE: "x2"}, {CENTRE: "±10 um"}, {}, {CENTRE: "x3"}]
-    own.notes(asked(WIDER, measure=MOTION, beside=beside))
+    past = [{CENTRE: f"±{own} µm"} for own in range(10, 35)]
+    own.notes(asked(WIDER, measure=MOTION, beside=beside, past=past))
     own.lock.release()
     later = Questions(Workspace.of(own.workspace.folder), FolderLock(own.workspace.folder))
-    assert later.scene(asked())["notes"] == {"now": WIDER, "beside": beside[:3], "measure": MOTION}
+    assert later.scene(asked())["notes"] == {
+        "now": WIDER,
+        "beside": beside[:3],
+        "past": past[-MOST_UNDONE:],
+        "measure": MOTION,
+    }
     later.close()
 
 
@@ -429,7 +437,10 @@ def test_an_app_that_only_reads_notes_no_scene_that_it_opens(own: Questions) -> 
     "damaged",
     [
         *("", "{", "[]", "null", "[" * 100_000, "\0", '{"version": 1}'),
-        *(json.dumps(NOTES | other) for other in ({"version": 2}, {"now": 3}, {"beside": 3}, {"beside": ["x"]})),
+        *(
+            json.dumps(NOTES | other)
+            for other in ({"version": 2}, {"now": 3}, {"beside": 3}, {"beside": ["x"]}, {"past": 3}, {"past": ["x"]})
+        ),
     ],
 )
 def test_notes_that_are_damaged_or_of_another_version_are_none(damaged: str, own: Questions) -> None:
@@ -437,7 +448,7 @@ def test_notes_that_are_damaged_or_of_another_version_are_none(damaged: str, own
     file.write_text(json.dumps(NOTES))
     assert own.scene(asked())["notes"]["now"] == WIDER
     file.write_text(damaged)
-    assert own.scene(asked())["notes"] == {"now": {}, "beside": [], "measure": ""}
+    assert own.scene(asked())["notes"] == {"now": {}, "beside": [], "past": [], "measure": ""}
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ TOGETHER: Final = 5
 HIGH: Final = 0.45
 """Height of the histogram, of a chart's: sliders are seen below it."""
 STEP: Final = 1.01
-"""Factor on the width by a step of a slider, as in `page/sliders.js`."""
+"""Factor on the width by a step of a slider, as in `page/sliders.js`, about: it lands on round numbers."""
 WIDEST: Final = 4.0
 """Factor at the ends of a slider, where nothing ends it before."""
 KINDS: Final = {"OK": "ok", "NOT OK": "not-ok", "too few trials": "open", "no limits": "none"}
@@ -357,21 +357,24 @@ def _factor(draw: Draw, other: Draw) -> float:
 
 
 def _width(draw: Draw) -> float:
-    if isinstance(draw, Zoned):
-        return draw.width
+    first, *last = numbers_of(draw)
+    return last[0] - first if last else first
+
+
+def numbers_of(draw: Draw) -> tuple[float, ...]:
+    """Both limits of a draw, or its one size [mm, rad, K]: the width of a zone, a scale or a sigma."""
     law = draw.distribution
+    if isinstance(draw, Zoned):
+        return (draw.width,)
     if isinstance(law, Distribution) and law.limits is not None:
-        return law.limits[1] - law.limits[0]
-    return float(getattr(law, "scale", law.sigma))
+        return law.limits
+    return (float(getattr(law, "scale", law.sigma)),)
 
 
 def written(contributor: Contributor, draw: Draw) -> str:
     """A tolerance as `--set` takes it, with the signs of reports: ±20 µm, -30 µm..-19 µm, or the width of a zone."""
-    per, law = contributor.per_unit, draw.distribution
     unit = "" if contributor.unit == "1" else signed_units(f" {contributor.unit}")
-    if isinstance(draw, Zoned):
-        return f"{draw.width / per:.6g}{unit}"
-    if isinstance(law, Distribution) and law.limits is not None:
-        low, high = (float(f"{own / per:.6g}") for own in law.limits)
-        return f"±{high:g}{unit}" if low == -high else f"{low:g}{unit}..{high:g}{unit}"
-    return f"{getattr(law, 'scale', law.sigma) / per:.6g}{unit}"
+    low, *high = (float(f"{own / contributor.per_unit:.6g}") for own in numbers_of(draw))
+    if not high:
+        return f"{low:g}{unit}"
+    return f"±{high[0]:g}{unit}" if low == -high[0] else f"{low:g}{unit}..{high[0]:g}{unit}"

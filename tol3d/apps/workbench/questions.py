@@ -20,10 +20,11 @@ from tol3d.apps.workbench.card import answer, histogram, limit_fields, result, s
 from tol3d.apps.workbench.flags import flags
 from tol3d.apps.workbench.forms import ANALYSES, FormScene, form, line_words
 from tol3d.apps.workbench.place import FolderLock
+from tol3d.apps.workbench.round_numbers import in_round_numbers
 from tol3d.apps.workbench.session import AT_ONCE, FEW, NoEstimate, Session, Turn
 from tol3d.apps.workbench.text_check import checked
 from tol3d.apps.workbench.tree import parts_of, tree
-from tol3d.apps.workbench.workspace import MOST_KEPT, Notes, Told, Workspace, digest, written
+from tol3d.apps.workbench.workspace import MOST_KEPT, MOST_UNDONE, Notes, Told, Workspace, digest, written
 from tol3d.errors import InputError
 from tol3d.report.html.blocks import tag
 from tol3d.simulate import Overrides, run_scene
@@ -93,7 +94,7 @@ class Questions:
         found: dict[str, Any] = {
             "text": content.decode("utf-8", "replace"),
             "digest": digest(content),
-            "notes": {"now": dict(notes.now), "beside": [dict(own) for own in notes.beside], "measure": notes.measure},
+            "notes": {"now": dict(notes.now), "beside": [], "past": [], "measure": notes.measure},
             "problems": [],
         }
         try:
@@ -102,8 +103,11 @@ class Questions:
             return found | {"problems": _problems(error)}
         measures = [{"name": own.name, "unit": own.unit} for own in session.response.measures]
         now, dropped = session.still(notes.now)
-        beside = [still for own in notes.beside if (still := session.still(own)[0]) or not own]
-        found["notes"] |= {"now": now, "beside": beside}
+        beside, past = (
+            [still for own in each if (still := session.still(own)[0]) or not own]
+            for each in (notes.beside, notes.past)
+        )
+        found["notes"] |= {"now": now, "beside": beside, "past": past}
         return found | {
             "dropped": [*dropped],
             "title": session.scene.scene,
@@ -143,9 +147,14 @@ class Questions:
         return told | shown | {"chart": histogram(base, judged, None)}
 
     def estimate(self, asked: Told) -> Told:
-        """The distribution while a tolerance moves: by slopes, on kept builds; words on them while they are made."""
+        """The distribution while a tolerance moves: by slopes, on kept builds; words on them while they are made.
+
+        A line that is named as held by a slider is in round numbers.
+        """
         turn = Turn()
         session, measure, now = self._asked(asked)
+        if (held := asked.get("held")) is not None and str(held) in now:
+            now = {**now, str(held): in_round_numbers(session, str(held), now[str(held)])}
         base, limits = session.evaluated(measure, {}), session.limits(now)
         base.within(limits)  # words that are none are refused before anything takes time
         estimate = session.estimate(measure, now, turn)
@@ -153,6 +162,11 @@ class Questions:
         if isinstance(estimate, NoEstimate):
             return told | {"none": estimate.words, "waits": estimate.is_coming}
         return told | {"chart": histogram(base.within(limits), None, estimate if session.changes(now) else None)}
+
+    def rounded(self, asked: Told) -> Told:
+        """Words of a tolerance that a slider was moved to, by a factor."""
+        session = self.session(str(asked["scene"]))
+        return {"words": in_round_numbers(session, str(asked["line"]), str(asked["words"]))}
 
     def sliders(self, asked: Told) -> Told:
         """A slider for each tolerance that acts on a measure; by shares as soon as a run knows them."""
@@ -235,9 +249,10 @@ class Questions:
         """Keep what is moved beside the scene, so that it is there after a reload."""
         name, now = str(asked["scene"]), _changes(asked.get("now"))
         beside = tuple(_changes(own) for own in asked.get("beside", ())[:MOST_KEPT])
+        past = tuple(_changes(own) for own in asked.get("past", ())[-MOST_UNDONE:])
         self.workspace.scene(name)
         if not self.read_only:
-            self.workspace.note(name, Notes(now, beside, str(asked.get("measure", ""))))
+            self.workspace.note(name, Notes(now, beside, str(asked.get("measure", "")), past))
         return {}
 
     def check(self, asked: Told) -> Told:
@@ -270,7 +285,7 @@ class Questions:
         if self.read_only:
             raise InputError(self.lock.refusal)
         if digest(path.read_bytes()) != known:
-            raise StaleError(f"{path.name} was changed by another program since it was read here: load the page again")
+            raise StaleError(f"{path.name} was changed by another program since it was read here: load its text first")
         content = text.encode()
         written(
             path,

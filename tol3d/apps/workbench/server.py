@@ -27,7 +27,19 @@ if TYPE_CHECKING:
     from tol3d.apps.workbench.questions import Questions
 
 QUESTIONS: Final = "tol3d.apps.workbench.questions"  # loads analyses and scipy: seconds
-OF_SCENES: Final = ("scene", "card", "estimate", "sliders", "notes", "check", "keep", "save", "view", "forms")
+OF_SCENES: Final = (
+    "scene",
+    "card",
+    "estimate",
+    "rounded",
+    "sliders",
+    "notes",
+    "check",
+    "keep",
+    "save",
+    "view",
+    "forms",
+)
 OF_FOLDER: Final = (
     *("folder", "changed", "jobs", "start", "analyse", "cancel", "resume", "delete"),
     *("runs", "report", "answer", "numbers"),

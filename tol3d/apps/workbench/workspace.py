@@ -24,6 +24,8 @@ LARGEST_SCENE: Final = 10_000_000  # bytes
 LAST: Final = "opened.json"  # no scene's notes: their names have a scene's suffix in them
 MOST_KEPT: Final = 3
 """What-ifs beside each other."""
+MOST_UNDONE: Final = 20
+"""Moves that can be undone after a reload."""
 
 Told = Mapping[str, Any]
 """Words of a question of the page, or of its answer."""
@@ -40,11 +42,13 @@ class Notes:
         now: changes that are being tried.
         beside: up to three others that are shown beside them.
         measure: the chosen one; "" for the first.
+        past: what was tried before, the last one last, for undo.
     """
 
     now: WhatIf
     beside: tuple[WhatIf, ...] = ()
     measure: str = ""
+    past: tuple[WhatIf, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -137,9 +141,11 @@ class Workspace:
             told = json.loads((self.notes_folder / f"{scene}.json").read_text("utf-8"))
             if told["version"] != VERSION:
                 return Notes({})
-            return Notes(
-                _changes(told["now"]), tuple(_changes(own) for own in told["beside"][:MOST_KEPT]), str(told["measure"])
+            beside, past = (
+                tuple(_changes(own) for own in each)
+                for each in (told["beside"][:MOST_KEPT], told.get("past", [])[-MOST_UNDONE:])
             )
+            return Notes(_changes(told["now"]), beside, str(told["measure"]), past)
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return Notes({})
 
@@ -154,6 +160,7 @@ class Workspace:
             "now": dict(notes.now),
             "beside": [dict(own) for own in notes.beside],
             "measure": notes.measure,
+            "past": [dict(own) for own in notes.past],
         }
         written(self.notes_folder / f"{scene}.json", json.dumps(told, ensure_ascii=False, indent=1).encode())
 

@@ -53,8 +53,7 @@ export async function open(name) {
     app.beside = [];
     return;
   }
-  app.now = found.notes.now;
-  app.beside = found.notes.beside;
+  ({ now: app.now, beside: app.beside, past: app.past } = found.notes);
   $("dropped").textContent = found.dropped.join(" ");
   $("dropped").hidden = !found.dropped.length;
   $("tree").innerHTML = found.tree;
@@ -95,7 +94,7 @@ setInterval(async () => {
       return;
     }
     if (editor.text() === app.saved) await open(app.scene);
-    else trouble("the file was changed by another program: save is refused until you reload the page");
+    else $("changed").hidden = false;
   } catch (error) {
     trouble(error);
   }
@@ -120,8 +119,18 @@ $("undo").addEventListener("click", undo);
 $("keep").addEventListener("click", keep);
 $("cancel").addEventListener("click", () => $("diff").close());
 $("save").addEventListener("click", save);
+$("copy").addEventListener("click", async () => {
+  try {
+    await navigator.clipboard.writeText(editor.text());
+    $("copied").textContent = "copied";
+  } catch {
+    $("copied").textContent = "the browser does not allow it: select the text and copy it";
+  }
+});
+$("load").addEventListener("click", () => open(app.scene).catch(trouble));
 $("stop").addEventListener("click", () => (app.stopped = true));
 $("aside").addEventListener("click", async () => {
+  await app.moving;
   app.beside.push(app.now);
   note();
   $("aside").disabled = app.beside.length >= 3;
@@ -154,6 +163,13 @@ document.addEventListener("keydown", (event) => {
     undo();
   } else if (event.key === "?" && !typing) $("help").showModal();
 });
+
+const narrow = matchMedia("(max-width: 46rem)"); // there the text comes last, by Tab too
+function place() {
+  (narrow.matches ? $("left").parentElement : $("middle")).append($("text"));
+}
+narrow.addEventListener("change", place);
+place();
 
 window.tol3dApp = { app, ask, trouble, editor, choose };
 start().catch(trouble);

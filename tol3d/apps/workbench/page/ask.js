@@ -9,6 +9,7 @@ if (location.hash.length > 1 && !location.hash.startsWith("#/")) {
 
 export const app = {
   scene: "", measure: "", now: {}, beside: [], past: [], digest: "", saved: "", readOnly: "", wish: 0, solid: 0, stopped: false,
+  moving: null, // a move on its way to round numbers
 };
 
 export async function ask(name, told = {}) {

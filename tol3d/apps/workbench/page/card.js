@@ -48,21 +48,21 @@ function changesTold() {
 }
 
 let flying = false, waiting = null;
-export async function estimate(now) { // one request under way, the latest wish wins
+export async function estimate(now, held) { // one request under way, the latest wish wins
   if (flying) {
-    waiting = now;
+    waiting = [now, held];
     return;
   }
   flying = true;
   const wish = ++app.wish;
   try {
-    const found = await ask("estimate", { now });
+    const found = await ask("estimate", { now, held });
     if (app.solid < wish) { // nothing newer has come before it
       if (found.chart) $("chart").innerHTML = found.chart;
       fields(found.written);
       without(wish === app.wish ? found.none : "");
       trouble(null);
-      if (found.waits && wish === app.wish) waiting ??= now; // as long as nothing else is asked for
+      if (found.waits && wish === app.wish) waiting ??= [now, held]; // as long as nothing else is asked for
     }
   } catch (error) {
     if (app.solid < wish) trouble(error);
@@ -71,7 +71,7 @@ export async function estimate(now) { // one request under way, the latest wish 
   if (waiting) {
     const next = waiting;
     waiting = null;
-    await estimate(next);
+    await estimate(...next);
   }
 }
 

@@ -61,7 +61,17 @@ export async function take(now) {
 }
 
 export function note() {
-  ask("notes", { beside: app.beside }).catch(trouble);
+  ask("notes", { beside: app.beside, past: app.past }).catch(trouble);
+}
+
+async function released(own, line) {
+  const { value } = own, factor = factorWords(Number(value));
+  try {
+    const words = factor && (await ask("rounded", { line, words: factor })).words;
+    if (own.value === value) await take(moved(line, words)); // else it has gone on
+  } catch (error) {
+    trouble(error);
+  }
 }
 
 $("sliders").addEventListener("keydown", (event) => {
@@ -73,7 +83,7 @@ $("sliders").addEventListener("keydown", (event) => {
 });
 $("sliders").addEventListener("input", (event) => {
   const { type, dataset, value } = event.target;
-  if (type === "range") estimate(moved(dataset.line, factorWords(Number(value))));
+  if (type === "range") estimate(moved(dataset.line, factorWords(Number(value))), dataset.line);
 });
 $("sliders").addEventListener("change", async (event) => {
   const own = event.target, { line } = own.dataset;
@@ -81,7 +91,7 @@ $("sliders").addEventListener("change", async (event) => {
   if (own.type === "range") {
     forget();
     own.closest("li").querySelector(".class-words")?.remove(); // its width is of no class
-    await take(moved(line, factorWords(Number(own.value))));
+    app.moving = released(own, line);
     return;
   }
   const now = moved(line, own.value.trim() || null);
@@ -100,6 +110,7 @@ $("sliders").addEventListener("change", async (event) => {
 });
 
 export async function undo() {
+  await app.moving;
   if (!app.past.length) return;
   app.now = app.past.pop();
   note();

@@ -13,7 +13,8 @@ export function showText(text, digest) {
   editor.set(text);
   app.saved = editor.text();
   $("save").disabled = true;
-  $("saved").textContent = "";
+  $("saved").textContent = $("copied").textContent = "";
+  $("changed").hidden = true;
 }
 
 const ROOM = 60; // px, for the message below a line
@@ -77,6 +78,7 @@ export async function save() {
 }
 
 export async function keep() {
+  await app.moving;
   if ($("keep").disabled) return;
   if (editor.text() !== app.saved) {
     trouble("save the text first: what is kept is a change of the scene's file, which is then read again");
