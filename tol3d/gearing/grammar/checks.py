@@ -5,12 +5,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from tol3d.gearing.grammar.measures import FlankMeasureSpec
-from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec, ReducerSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec, ReducerSpec, TrainSpec
 from tol3d.gearing.grammar.parts import (
     BearingSpec,
     BoredGearSpec,
     GearSpec,
     HelicalGearSpec,
+    ShaftReference,
     ShaftSpec,
     carried,
     gears_on,
@@ -65,16 +66,15 @@ def forms_of_two_shapes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 
 def helices_elsewhere(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
-    """Helical gears of scenes with other moves than meshes: what these compute of them was never derived."""
+    """Helical gears of sets and of scenes with trains: what these compute of them was never derived."""
+    helical = scene.of(HelicalGearSpec)
     for name, move in scene.moves.items():
-        if not isinstance(move, MeshSpec):
-            for gear in scene.of(HelicalGearSpec):
-                path: KeyPath = ("parts", gear, "kind")
-                yield (
-                    path,
-                    f"expected a spur_gear, for {name!r} is {move.words}: helical gears are simulated in meshes alone",
-                )
-            return
+        if isinstance(move, MeshSpec):
+            continue
+        own = [reference.name for reference in move.references() if not isinstance(reference, ShaftReference)]
+        for gear in (gear for gear in helical if gear in own or isinstance(move, TrainSpec)):
+            words = f"expected a spur_gear, for {name!r} is {move.words}: helical gears are simulated in meshes alone"
+            yield ("parts", gear, "kind"), words
 
 
 def readings_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
