@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from tol3d.gearing.grammar.measures import FlankMeasureSpec
-from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec, ReducerSpec, TrainSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import (
     BearingSpec,
     BoredGearSpec,
@@ -66,13 +66,13 @@ def forms_of_two_shapes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 
 def helices_elsewhere(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
-    """Helical gears of sets and of scenes with trains: what these compute of them was never derived."""
+    """Helical gears that moves other than meshes name: what these compute of them was never derived."""
     helical = scene.of(HelicalGearSpec)
     for name, move in scene.moves.items():
         if isinstance(move, MeshSpec):
             continue
         own = [reference.name for reference in move.references() if not isinstance(reference, ShaftReference)]
-        for gear in (gear for gear in helical if gear in own or isinstance(move, TrainSpec)):
+        for gear in (gear for gear in helical if gear in own):
             words = f"expected a spur_gear, for {name!r} is {move.words}: helical gears are simulated in meshes alone"
             yield ("parts", gear, "kind"), words
 
