@@ -148,6 +148,11 @@ def test_gradients_of_a_spur_pair_are_those_of_its_involutes() -> None:
     assert slopes == pytest.approx(2.0 * np.sin(np.arccos(base / (172.5 + builds[:, centre]))), rel=1e-9)
 
 
+def test_a_scene_without_tolerances_has_no_slopes() -> None:
+    own = response_of(simulation_of(load("spur_pair").model_copy(update={"tolerances": {}}), Overrides(trials=10)))
+    assert own.gradient(np.zeros((3, 0))).shape == (3, len(own.names), 0)
+
+
 def test_other_tolerances_of_the_same_system() -> None:
     own = response("spur_pair").of("normal backlash")
     name = next(each.name for each in own.contributors if isinstance(each.draw, Scalar))

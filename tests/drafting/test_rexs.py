@@ -339,13 +339,21 @@ def test_helical_stages_are_read_with_their_backlash() -> None:
     assert [1e3 * (own.normal_backlash or 0) for own in (fast, slow)] == pytest.approx([0.001, -0.004], abs=6e-4)
 
 
-def test_helical_gears_are_drafted_with_their_meshes_alone() -> None:
+def test_helical_gears_are_drafted_with_their_train() -> None:
+    """cd25, filled in, is -95 to -145 um of each gear; a pair's 240 um turn its wheel by 240 um/(m_n z/2)."""
     drafted = gearbox_draft(two_stages().file())
     text = drafted.scene()[0]
     read = yaml.safe_load(text)
-    assert [own["kind"] for own in read["moves"].values()] == ["mesh", "mesh"]
-    assert "lost motion of whole trains: helical gears are simulated in their meshes alone" in text
+    assert [own["kind"] for own in read["moves"].values()] == ["mesh", "mesh", "train"]
+    assert read["moves"]["train to three"] == {"kind": "train", "driven": "one", "output": "three"}
+    assert "simulated in their meshes alone" not in text
     simulation_of(load_text(text, Path("box.yaml")), Overrides())
+    filled = re.sub("# (tolerances:|. tooth thickness)", r"\1", text)
+    system = simulation_of(load_text(filled, Path("box.yaml")), Overrides()).system
+    lost = next(own for own in system.measures if own.name == "lost motion of three")
+    form = system.closed_form(lost)
+    assert form is not None
+    assert form.mean == pytest.approx(0.24 / (4.5 * 51 / 2) * 23 / 34 + 0.24 / (6.5 * 34 / 2), abs=1e-7)
     assert read["parts"]["a"] == {
         "kind": "helical_gear", "teeth": 27, "module": "4.5 mm", "pressure_angle": "20 deg", "face_width": "15 mm",
         "helix_angle": "21 deg", "hand": "right", "profile_shift": 0.231415,

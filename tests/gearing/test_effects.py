@@ -17,6 +17,7 @@ from tol3d.gearing.builds.build import build
 from tol3d.gearing.builds.displacements import displacements
 from tol3d.gearing.effects import (
     AxesOffset,
+    AxialPlay,
     AxisOffset,
     AxisTilt,
     Clocking,
@@ -49,6 +50,7 @@ ALL: tuple[Effect, ...] = (
     Temperature(("pinion", "wheel")),
     LinkDeviation("reducer"),
     Clocking("wheel"),
+    AxialPlay("wheel"),
 )
 
 
@@ -92,6 +94,7 @@ def test_both_methods_know_every_effect_of_every_kind_of_pair(effect: Effect, pa
         (Temperature(("a", "box")), True, True),
         (LinkDeviation("r"), False, False),
         (Clocking("b"), False, False),
+        (AxialPlay("b"), False, False),
         (CombinedEffect((ToothThickness("a", 0.02), AxisOffset("c"))), True, True),
     ],
 )
@@ -118,6 +121,14 @@ def test_play_is_of_the_reducer_that_it_names() -> None:
     assert LinkDeviation("r").acts_on("r")
     assert not LinkDeviation("r").acts_on("other")
     assert not Clocking("r").acts_on("r")
+
+
+def test_axial_play_is_of_the_shaft_that_it_names() -> None:
+    assert AxialPlay("s").slides("s")
+    assert not AxialPlay("s").slides("other")
+    assert not Clocking("s").slides("s")
+    assert CombinedEffect((AxisOffset("b"), AxialPlay("s"))).slides("s")
+    assert not CombinedEffect((AxisOffset("b"), AxialPlay("s"))).slides("b")
 
 
 # numpy's builds and the compiled ones -------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 import math
 import re
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
@@ -15,12 +15,16 @@ from tol3d.cad.solids import measuring_strips
 from tol3d.errors import InputError, SceneError
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import fcl_engine
+from tol3d.gearing.grammar.checks import helices_elsewhere
+from tol3d.gearing.grammar.parts import HelicalGearSpec
 from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Model, Reading
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gears import SpurPair
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
+from tol3d.scene.bases import MoveSpec
+from tol3d.scene.entry import Reference
 from tol3d.simulate import load
 from tol3d.study.system.trials import Trials
 
@@ -221,11 +225,6 @@ def test_what_was_never_derived_or_does_not_mesh_is_refused(scene: Scene, change
     ("section", "entry", "words"),
     [
         (
-            "moves",
-            "t: {kind: train, driven: pinion, output: wheel}",
-            "parts.pinion.kind: expected a spur_gear, for 't' is",
-        ),
-        (
             "tolerances",
             "p: {kind: pitch_deviation, of: wheel, flanks: each, limits: {iso_class: 6}, law: {kind: normal, cpk: 1}}",
             "tolerances.p.of: expected the name of a spur gear",
@@ -243,6 +242,26 @@ def test_entries_that_know_no_helix_refuse_it(section: str, entry: str, words: s
     (path := tmp_path / "added.yaml").write_text(added.replace(f"{section}:\n", f"{section}:\n  {entry}\n", 1))
     with pytest.raises(SceneError, match=re.escape(words)):
         model_of_scene(path)
+
+
+class Unknown(MoveSpec):
+    """A move of a mechanism that knows no helix."""
+
+    words: ClassVar[str] = "a move of another mechanism"
+    kind: Literal["unknown"] = "unknown"
+
+    def references(self) -> tuple[Reference, ...]:
+        """A gear."""
+        return (Reference(("gear",), "pinion", (HelicalGearSpec,)),)
+
+
+def test_moves_of_other_mechanisms_refuse_helical_gears(scene: Scene) -> None:
+    """Those that they name."""
+    beside = scene.model_copy(update={"moves": {**scene.moves, "x": Unknown()}})
+    found = dict(helices_elsewhere(beside))
+    assert set(found) == {("parts", "pinion", "kind")}
+    assert "expected a spur_gear, for 'x' is a move of another mechanism" in found["parts", "pinion", "kind"]
+    assert not list(helices_elsewhere(scene))
 
 
 def test_records_of_a_rig_know_spur_gears_alone(scene: Scene) -> None:

@@ -394,7 +394,7 @@ class Response:
         found = np.empty((len(rows), len(self.measures), len(columns)))
         for first in range(0, len(rows), many):
             some = slice(first, first + many)
-            builds = (rows[some, None] + shifts).reshape(-1, self.components)
+            builds = (rows[some, None] + shifts).reshape(len(rows[some]) * len(shifts), self.components)
             places = {name: np.repeat(own, len(shifts), axis=0) for name, own in (_at(positions, some) or {}).items()}
             values = self.values(builds, None if positions is None else places).values
             either = values.reshape(len(rows[some]), 2, len(columns), len(self.measures))

@@ -39,6 +39,10 @@ class Effect(ABC):
         """True if it is a deviation of a link that is no gear mesh."""
         return False
 
+    def slides(self, shaft: str) -> bool:
+        """True if it lets a shaft slide along its axis."""
+        return False
+
     @property
     def turns_with(self) -> str | None:
         """The gear with which the deviation turns; None where it rests."""
@@ -76,6 +80,10 @@ class CombinedEffect(Effect):
     @override
     def acts_on(self, link: str) -> bool:
         return any(effect.acts_on(link) for effect in self.effects)
+
+    @override
+    def slides(self, shaft: str) -> bool:
+        return any(effect.slides(shaft) for effect in self.effects)
 
     @override
     def deviates_teeth(self, gear: str) -> bool:
@@ -196,6 +204,26 @@ class Clocking(Effect):
     def clocking(self, mesh: Mesh) -> float:
         """A driver that sits ahead takes the driven gear with it; a driven gear ahead leaves its shaft behind."""
         return float(mesh.rate) * (self.part == mesh.driver) - (self.part == mesh.driven)
+
+
+@dataclass(frozen=True)
+class AxialPlay(Effect):
+    """Total play of a shaft along its axis [mm], `factor` times the deviation.
+
+    Nothing moves while a load stays on one side: where it changes, the shaft slides from one end to the other, and
+    helical gears on it screw in their mates' teeth. By how much that turns a train is of its layout: model/slides.py.
+    """
+
+    shaft: str
+    factor: float = 1.0
+
+    def acts_in(self, mesh: Mesh) -> bool:
+        """Teeth have the same backlash wherever the shaft lies."""
+        return False
+
+    @override
+    def slides(self, shaft: str) -> bool:
+        return shaft == self.shaft
 
 
 UNIFORM: Final = 0

@@ -18,6 +18,7 @@ from tol3d.gearing.grammar.checks import (
     implausible_faces,
     implausible_shafts,
     readings_of_helices,
+    second_axial_plays,
     shafts_thicker_than_hubs,
     steep_helices,
 )
@@ -84,7 +85,14 @@ GEARING: Final = Mechanism(
     tolerances=(*_kinds(ToleranceEntry, tolerances), TemperatureSpec),
     moves=_kinds(MoveSpec),
     measures=_kinds(MeasureEntry),
-    checks=(carried_again, forms_of_two_shapes, helices_elsewhere, readings_of_helices, forces_of_helices),
+    checks=(
+        carried_again,
+        forms_of_two_shapes,
+        helices_elsewhere,
+        readings_of_helices,
+        forces_of_helices,
+        second_axial_plays,
+    ),
     warnings=(
         implausible_displacements,
         implausible_faces,

@@ -9,6 +9,7 @@ import numpy as np
 from tol3d.gearing.builds.slots import CENTRE, FLANK_TURN, OFFSET, TURN
 from tol3d.gearing.effects import (
     AxesOffset,
+    AxialPlay,
     AxisOffset,
     AxisTilt,
     Clocking,
@@ -147,8 +148,9 @@ def _(effect: FlankDeviation, model: Model, components: int) -> Iterator[FlankOf
 
 @displacements.register(LinkDeviation)
 @displacements.register(Clocking)
-def _(effect: LinkDeviation | Clocking, model: Model, components: int) -> Iterator[Displacement]:
-    """A mesh finds its rest for any turn of its gears; for turns of shafts see clocking.py."""
+@displacements.register(AxialPlay)
+def _(effect: LinkDeviation | Clocking | AxialPlay, model: Model, components: int) -> Iterator[Displacement]:
+    """A mesh finds its rest for any turn of its gears; play of a train adds what its shafts turn, see play/play.py."""
     return iter(())
 
 

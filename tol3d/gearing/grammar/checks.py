@@ -11,6 +11,7 @@ from tol3d.gearing.grammar.parts import (
     BoredGearSpec,
     GearSpec,
     HelicalGearSpec,
+    ShaftReference,
     ShaftSpec,
     carried,
     gears_on,
@@ -21,6 +22,7 @@ from tol3d.gearing.grammar.tolerances.axes import (
     CentreDistanceSpec,
     ShaftAngleSpec,
 )
+from tol3d.gearing.grammar.tolerances.axial_play import AxialPlaySpec, shaft_at
 from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.gearing.grammar.tolerances.flank_shape import ProfileFormSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
@@ -65,16 +67,25 @@ def forms_of_two_shapes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 
 def helices_elsewhere(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
-    """Helical gears of scenes with other moves than meshes: what these compute of them was never derived."""
+    """Helical gears that moves other than meshes name: what these compute of them was never derived."""
+    helical = scene.of(HelicalGearSpec)
     for name, move in scene.moves.items():
-        if not isinstance(move, MeshSpec):
-            for gear in scene.of(HelicalGearSpec):
-                path: KeyPath = ("parts", gear, "kind")
-                yield (
-                    path,
-                    f"expected a spur_gear, for {name!r} is {move.words}: helical gears are simulated in meshes alone",
-                )
-            return
+        if isinstance(move, MeshSpec):
+            continue
+        own = [reference.name for reference in move.references() if not isinstance(reference, ShaftReference)]
+        for gear in (gear for gear in helical if gear in own):
+            words = f"expected a spur_gear, for {name!r} is {move.words}"
+            yield ("parts", gear, "kind"), f"{words}: helical gears are simulated in meshes and trains alone"
+
+
+def second_axial_plays(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Axial plays of a shaft that has one: the stops that are nearer decide, which is no sum."""
+    first: dict[str, str] = {}
+    for name, spec in scene.of(AxialPlaySpec).items():
+        shaft = shaft_at(spec.of, scene.parts)
+        if (other := first.setdefault(shaft, str(name))) != str(name):
+            words = f"expected one axial play of {shaft!r}, got another one beside {other!r}"
+            yield ("tolerances", str(name), "of"), f"{words}; state the play between the stops that are nearest"
 
 
 def readings_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
@@ -137,10 +148,15 @@ def implausible_faces(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
             words = f"expected at least {least:.4g} mm, a tenth of the module, got {gear.face_width}"
             yield ("parts", name, "face_width"), f"{words}; check the unit"
     for name, spec in scene.of(AxialShiftSpec).items():
-        far, of = larger_end(spec.distribution.resolve(scene.files)), scene.parts[spec.of]
-        assert isinstance(of, GearSpec)
-        if sentence := WHOLE.sentence(f"the face width of {spec.of!r}", of.face_width.internal, far):
-            yield ("tolerances", name, "distribution"), sentence
+        far = larger_end(spec.distribution.resolve(scene.files))
+        widths = {
+            gear: part.face_width.internal
+            for gear in gears_on(spec.of, scene.parts)
+            if isinstance(part := scene.parts[gear], GearSpec)
+        }
+        for narrowest in sorted(widths, key=widths.__getitem__)[:1]:
+            if sentence := WHOLE.sentence(f"the face width of {narrowest!r}", widths[narrowest], far):
+                yield ("tolerances", name, "distribution"), sentence
 
 
 def implausible_shafts(scene: Scene) -> Iterator[tuple[KeyPath, str]]:

@@ -213,7 +213,7 @@ def _with_distances(gears: Scene, lines: Mapping[str, tuple[str, tuple[Bore, Bor
         if not any(shaft in lines for shaft in shafts):
             continue
         if not isinstance(move, MeshSpec):
-            words = f"expected a mesh of spur gears on a shaft in bores, got {move.words}: the place of a bevel "
+            words = f"expected a mesh on parallel axes of a shaft in bores, got {move.words}: the place of a bevel "
             raise gears.refuse(("moves", name), f"{words}gear along its axis is unknown")
         if outside := [shaft for shaft in shafts if shaft not in lines]:
             inside = next(shaft for shaft in shafts if shaft in lines)

@@ -26,11 +26,16 @@ Columns = Mapping[str, NDArray[Any]]
 
 
 def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
-    """The contributors that act on a measure: on one of its meshes, or one of its other links."""
+    """The contributors that act on a measure: on one of its meshes or other links, or by a shaft that slides."""
     meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
     links = {name for _, name in measure.kind.links}
     clocked = meshes if isinstance(measure.kind, LostMotion) and measure.kind.joins else ()
-    return tuple(contributor for contributor in model.contributors if _acts(contributor.effect, meshes, links, clocked))
+    sliding = measure.kind.sliding
+    return tuple(
+        contributor
+        for contributor in model.contributors
+        if _acts(contributor.effect, meshes, links, clocked) or any(map(contributor.effect.slides, sliding))
+    )
 
 
 def _acts(effect: Effect, meshes: Sequence[Mesh], links: Set[str], clocked: Sequence[Mesh]) -> bool:

@@ -2,6 +2,7 @@
 
 from tol3d.gearing.effects import (
     AxesOffset,
+    AxialPlay,
     AxisOffset,
     AxisTilt,
     Clocking,
@@ -25,6 +26,7 @@ from tol3d.gearing.model.from_scene import model_from_scene  # isort: skip  (nee
 __all__ = [
     "Arm",
     "AxesOffset",
+    "AxialPlay",
     "AxisOffset",
     "AxisTilt",
     "Backlash",

@@ -21,6 +21,7 @@ from tol3d.gearing.model.model import GearPart, Housing, Model
 from tol3d.gearing.model.nominal import Nominal
 from tol3d.gearing.model.pairs import assembly_warning, internal, pair_of, undercut_warning
 from tol3d.gearing.model.shaft_trees import refuse_no_trees, refuse_revolving
+from tol3d.gearing.model.slides import idle_slides, refuse_shared_thrust
 from tol3d.gearing.model.trains import (
     arms_of,
     loaded_flank,
@@ -228,7 +229,11 @@ def model_from_scene(scene: Scene) -> Model:
         arms=arms,
         trains=trains,
     )
-    return replace(model, measures=tuple(jumping(model, measure_of(scene, name, model)) for name in scene.measures))
+    measures = tuple(jumping(model, measure_of(scene, name, model)) for name in scene.measures)
+    model = replace(model, measures=measures)
+    refuse_shared_thrust(scene, model)
+    idle = (warned(scene.origin, ("tolerances", name), sentence) for name, sentence in idle_slides(model))
+    return replace(model, warnings=(*model.warnings, *idle))
 
 
 def jumping(model: Model, measure: Measure) -> Measure:

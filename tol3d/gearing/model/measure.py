@@ -34,17 +34,31 @@ class Reading:
 
 
 @dataclass(frozen=True)
+class Slide:
+    """A shaft that slides by its axial play where the load changes sides, as its helical gears make it do.
+
+    Args:
+        shaft: its name.
+        factor: turn of the gear, or of the shaft that a stage drives, per axial play [rad/mm].
+    """
+
+    shaft: str
+    factor: float
+
+
+@dataclass(frozen=True)
 class Backlash:
     """A backlash of a mesh: normal and circumferential [mm], or angular [rad] of one gear, the other held.
 
     Its rest angle [rad] is where the driven gear rests on the flank of its reading, against the middle of a nominal
-    space.
+    space. An angular backlash that is measured for itself contains the slides of its shafts; one of a stage does not.
     """
 
     quantity: BacklashQuantity
     mesh: str
     gear: str
     reading: Reading = Reading()
+    slides: tuple[Slide, ...] = ()
 
     @property
     def is_angle(self) -> bool:
@@ -66,6 +80,11 @@ class Backlash:
         """The links that are no meshes whose play it adds up, with their factors: none."""
         return ()
 
+    @property
+    def sliding(self) -> frozenset[str]:
+        """The shafts whose axial play acts."""
+        return frozenset(slide.shaft for slide in self.slides)
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -79,6 +98,7 @@ class Stage:
             gear, of the driven shaft.
         has_middle: True if a link that is no mesh defines the middle of its free turn.
         compares: whether a link that is no mesh compares load paths within it, so that its play is no sum.
+        slides: of the shaft that a mesh drives, or of its driver's; each shaft of a train slides in one stage.
     """
 
     link: str
@@ -87,6 +107,7 @@ class Stage:
     sense: int = 1
     has_middle: bool = False
     compares: bool = False
+    slides: tuple[Slide, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -110,6 +131,7 @@ class ParallelStage:
     sense: int = 1
     backlash: None = None
     loops: tuple[tuple[Stage, ...], ...] = ()
+    slides: tuple[Slide, ...] = ()  # none: see model/slides.py
 
     @property
     def singles(self) -> tuple[Stage, ...]:
@@ -188,6 +210,11 @@ class LostMotion:
         """The links that are no meshes whose play it adds up or compares, with their factors."""
         return tuple((stage.factor, stage.link) for stage in self.singles if stage.backlash is None)
 
+    @property
+    def sliding(self) -> frozenset[str]:
+        """The shafts whose axial play acts."""
+        return frozenset(slide.shaft for stage in self.stages for slide in stage.slides)
+
 
 @dataclass(frozen=True)
 class TransmissionError:
@@ -214,6 +241,7 @@ class TransmissionError:
     is_angle: ClassVar[bool] = True
     adds_up: ClassVar[bool] = True
     links: ClassVar[tuple[tuple[float, str], ...]] = ()
+    sliding: ClassVar[frozenset[str]] = frozenset()  # one flank side stays loaded
 
     @property
     def meshes(self) -> tuple[str, ...]:

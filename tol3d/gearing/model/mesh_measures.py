@@ -17,6 +17,7 @@ from tol3d.gearing.grammar.measures import (
 from tol3d.gearing.model.links import Link, Parallel, least_common
 from tol3d.gearing.model.measure import Backlash, Kind, Measure, Reading, TransmissionError
 from tol3d.gearing.model.model import Model
+from tol3d.gearing.model.slides import slides_of_mesh
 from tol3d.gearing.shafts import Mesh, Train
 from tol3d.gears import one_tooth_acts, one_tooth_share
 from tol3d.scene import Scene
@@ -137,9 +138,9 @@ BacklashSpec = NormalBacklashSpec | CircumferentialBacklashSpec | AngularBacklas
 def _(spec: BacklashSpec, scene: Scene, name: str, model: Model) -> Measure:
     mesh = model.mesh(spec.of)
     gear = getattr(spec, "gear", None) or mesh.driven
-    return Measure(
-        name, Backlash(spec.kind, mesh.name, gear, reader_of(spec)(mesh)), _positions_of_mesh(spec, mesh), spec.take
-    )
+    slides = slides_of_mesh(model, mesh, gear) if spec.kind == "angular_backlash" else ()
+    kind = Backlash(spec.kind, mesh.name, gear, reader_of(spec)(mesh), slides)
+    return Measure(name, kind, _positions_of_mesh(spec, mesh), spec.take)
 
 
 def _positions_of_mesh(spec: BacklashSpec, mesh: Mesh) -> Positions:

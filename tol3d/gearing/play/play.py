@@ -7,9 +7,12 @@ The free turn of a shaft on one load path is an interval: from where its driven 
 the other flank touches, links in series added up. Once the path that ends first on either side is known, all is linear
 in the play of each mesh and its rest angle; so derivatives are computed like values. Load paths that share links are
 compared likewise, walk by walk; each of their loops must have some play, or they bind.
+
+Where the load changes sides, the thrust of helical teeth moves a shaft through its axial play the way it yields: what
+it turns there adds to the play of the teeth; see model/slides.py.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
@@ -17,14 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.links.stated_link import FreeTurn, middle_of
-from tol3d.gearing.model import Backlash, LostMotion, Measure, Mesh, Model, Reading, TransmissionError
-from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
+from tol3d.gearing.model import AxialPlay, Backlash, LostMotion, Measure, Mesh, Model, Reading, TransmissionError
+from tol3d.gearing.model.measure import AnyStage, ParallelStage, Slide, Stage
 from tol3d.gearing.play.linked import LinkLaw, link_trials
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.breakdown import Breakdown, SumTerm
 from tol3d.study.system.trials import Trials
 from tol3d.units import ARCMIN
 
+TINY: Final = 1e-12  # mm; a clearance of that length has no direction
 FREE: Final = 1e-9  # rad; load paths that overlap by rounding errors do not bind each other
 
 Variable = tuple[Stage, Literal["play", "rest"]]
@@ -143,6 +147,37 @@ def clocking(model: Model, mesh: Mesh, deviations: Array) -> Array:
     return total
 
 
+def axial_play(model: Model, shaft: str, deviations: Array) -> Array:
+    """Play of a shaft along its axis [mm], (trials,), by deviations (trials, components) [mm, rad, K]."""
+    total = np.zeros(len(deviations))
+    for columns, effect in _sliding_by(model, shaft):
+        total = total + effect.factor * axial_amount(deviations[:, columns])
+    return total
+
+
+def axial_rates(model: Model, shaft: str, deviations: Array) -> Array:
+    """Its derivatives, (trials, components)."""
+    rates = np.zeros(deviations.shape)
+    for columns, effect in _sliding_by(model, shaft):
+        own = deviations[:, columns]
+        along = own / np.maximum(axial_amount(own), TINY)[:, None] if own.shape[1] == 2 else np.ones_like(own)
+        rates[:, columns] += effect.factor * along
+    return rates
+
+
+def axial_amount(own: Array) -> Array:
+    """A deviation of one component, or the length of one with a direction (trials, components): (trials,)."""
+    return own[:, 0] if own.shape[1] == 1 else np.hypot(own[:, 0], own[:, 1])
+
+
+def _sliding_by(model: Model, shaft: str) -> Iterator[tuple[slice, AxialPlay]]:
+    """Columns of the deviations that let a shaft slide, each with its effect."""
+    for contributor in model.contributors:
+        for effect in contributor.effect.singles:
+            if isinstance(effect, AxialPlay) and effect.slides(shaft):
+                yield model.component_slices[contributor.name], effect
+
+
 def staged_measures(model: Model) -> tuple[Measure, ...]:
     """The measure of each train whose stages are kept: its first of one value at random positions."""
     found: dict[str, Measure] = {}
@@ -215,7 +250,8 @@ class Play:
         """Parts of the sum: the name of each link or group of parallel load paths, its factor, its play."""
         kind = self.measure.kind
         if isinstance(kind, Backlash):
-            yield kind.mesh, 1.0, self.read(kind, seat_key(self.model, self.measure, kind))
+            read = self.read(kind, seat_key(self.model, self.measure, kind))
+            yield kind.mesh, 1.0, self._sliding(read, kind.slides)
             return
         if isinstance(kind, TransmissionError):
             for factor, backlash in kind.backlashes:
@@ -235,7 +271,7 @@ class Play:
 
     def _lacking(self, stage: AnyStage) -> Array:
         """Interference of a stage [rad]; of a link that is no mesh only where it jams: data sheets may say anything."""
-        lacking = np.minimum(self.of(stage), 0.0)
+        lacking = np.minimum(self._of_teeth(stage), 0.0)
         if isinstance(stage, Stage) and stage.backlash is None:
             return np.where(self._jams(stage), lacking, 0.0)
         return lacking
@@ -265,12 +301,22 @@ class Play:
         tight = np.zeros(self._shape, dtype=bool)
         stages = self.measure.kind.stages if isinstance(self.measure.kind, LostMotion) else ()
         for stage in _parallel(stages):
-            tight |= self.of(stage) < -FREE
+            tight |= self._of_teeth(stage) < -FREE
         return tight
 
     def of(self, stage: AnyStage) -> Array:
-        """Play of a stage at the shaft that it drives [rad], (trials, positions)."""
+        """Play of a stage at the shaft that it drives [rad], (trials, positions), with that of shafts that slide."""
+        return self._sliding(self._of_teeth(stage), stage.slides)
+
+    def _of_teeth(self, stage: AnyStage) -> Array:
+        """Play of a stage while no shaft slides [rad], (trials, positions)."""
         return value(self.form(stage), self.values_of)
+
+    def _sliding(self, play: Array, slides: Sequence[Slide]) -> Array:
+        """A play and the turns by which shafts slide through theirs [rad], (trials, positions)."""
+        for slide in slides:
+            play = play + slide.factor * axial_play(self.model, slide.shaft, self.trials.deviations)[:, None]
+        return play
 
     def form(self, stage: AnyStage) -> LinearForm:
         """The play as a weighted sum of the readings of its links."""

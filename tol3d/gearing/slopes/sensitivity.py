@@ -9,6 +9,7 @@ Neglected: errors of an engine's normals. At contacts of edges an engine that gi
 nearest points, is off by the slope of the gap along that edge.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,8 +21,9 @@ from tol3d.gearing.engines import OK, Engine, Gaps
 from tol3d.gearing.meshing.mesh import Meshing, MeshSeat
 from tol3d.gearing.meshing.seats import Seats, geometric_values, moved_rates, play_of, seated
 from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
+from tol3d.gearing.model.measure import Slide
 from tol3d.gearing.play.linked import link_trials
-from tol3d.gearing.play.play import Variable, seat_key
+from tol3d.gearing.play.play import Variable, axial_rates, seat_key
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
 from tol3d.numerics import frames
@@ -61,7 +63,7 @@ def _free_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats)
     kind = measure.kind
     if isinstance(kind, Backlash):
         key = seat_key(model, measure, kind)
-        return _rates(kind, seats.meshings[key], moves, seats.seats[key])
+        return _rates(kind, seats.meshings[key], moves, seats.seats[key]) + _sliding_rates(seats, kind.slides, measure)
     total = np.zeros((len(moves.scale), model.component_count))
     if isinstance(kind, TransmissionError):
         for factor, backlash in kind.backlashes:
@@ -73,7 +75,16 @@ def _free_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats)
         for variable, weight in play.form(stage).items():
             rows = np.broadcast_to(weight, (len(seats.trials), measure.positions.in_a_trial)).reshape(-1, 1)
             total += stage.factor * rows * _variable_rates(model, measure, moves, seats, variable)
+        total += stage.factor * _sliding_rates(seats, stage.slides, measure)
     return total
+
+
+def _sliding_rates(seats: Seats, slides: Sequence[Slide], measure: Measure) -> Array:
+    """Derivatives of the turns by which shafts slide, (rows, components); one row of zeros where none does."""
+    total = np.zeros((1, seats.model.component_count))
+    for slide in slides:
+        total = total + slide.factor * axial_rates(seats.model, slide.shaft, seats.trials.deviations)
+    return total if not slides else np.repeat(total, measure.positions.in_a_trial, axis=0)
 
 
 def _variable_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats, variable: Variable) -> Array:

@@ -9,15 +9,25 @@ their covariance.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 
 from tol3d.gearing.links import LinkSum
-from tol3d.gearing.model import Contributor, LostMotion, Measure, Model, Planar, Positions, TransmissionError
-from tol3d.gearing.model.measure import at_one_position
+from tol3d.gearing.model import (
+    AxialPlay,
+    Backlash,
+    Contributor,
+    LostMotion,
+    Measure,
+    Model,
+    Planar,
+    Positions,
+    TransmissionError,
+)
+from tol3d.gearing.model.measure import Slide, at_one_position
 from tol3d.gearing.stack_up.leaning import leaning_groups, leaning_shares
 from tol3d.gearing.stack_up.measures import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.stack import Stack
@@ -32,10 +42,12 @@ TILT_NODES = 2000  # midpoint rule in u, a plane; its error on |x| of a normal i
 def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     """Closed form of a measure read at one position.
 
-    None for extremes over a turn, parallel load paths, links whose theory is no sum, and single flanks that deviate.
+    None for extremes over a turn, parallel load paths, links whose theory is no sum, single flanks that deviate, and
+    clearances of random direction that let shafts slide by their length.
     """
     sums = _link_sums(model, measure)
-    if measure.take != "value" or not measure.kind.adds_up or sums is None:
+    slid = _slid(model, measure)
+    if measure.take != "value" or not measure.kind.adds_up or sums is None or slid is None:
         return None
     parts = tuple(_parts(model, measure))
     if any(part.stack.teeth for part in parts):
@@ -49,7 +61,7 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     leaning = [group for group in groups if group not in plain]
     names = frozenset(contributor.name for group in leaning for contributor in group)
     linear = [term for term in terms if term.term.tilts is None and term.term.contributor.name not in names]
-    own = [own for contributor in model.contributors if (own := _linear(contributor, linear, sums))]
+    own = [own for contributor in model.contributors if (own := _linear(contributor, linear, sums, slid))]
     shares = _with_covariances(own) if measure.positions.over == "random" else [each.share for each in own]
     shares += [share for tilts in plain.values() for share in tilts]
     shares += [Share(term.term.contributor.name, 0.0, 0.0, 0.0) for term in terms if _plane(term) == "none"]
@@ -194,9 +206,38 @@ def _of_link(factor: float, rates: Sequence[float]) -> Wave:
     return factor * math.hypot(x, y), math.atan2(y, x), Fraction(0)
 
 
-def _linear(contributor: Contributor, terms: Sequence[_ReadTerm], sums: _Sums) -> _Linear | None:
+_Slid = Mapping[str, float]
+"""Change of a measure per deviation by the shafts that slide, by contributor."""
+
+
+def _slid(model: Model, measure: Measure) -> _Slid | None:
+    """None where the play of a shaft is the length of a deviation with a direction."""
+    found: dict[str, float] = {}
+    for factor, slide in _slides(measure):
+        for contributor in model.contributors:
+            for effect in contributor.effect.singles:
+                if isinstance(effect, AxialPlay) and effect.slides(slide.shaft):
+                    if isinstance(contributor.draw, Planar):
+                        return None
+                    own = factor * slide.factor * effect.factor
+                    found[contributor.name] = found.get(contributor.name, 0.0) + own
+    return found
+
+
+def _slides(measure: Measure) -> Iterator[tuple[float, Slide]]:
+    """Shafts that slide, each with the factor from what it turns to the measure."""
+    kind = measure.kind
+    if isinstance(kind, Backlash):
+        yield from ((1.0, slide) for slide in kind.slides)
+    elif isinstance(kind, LostMotion):
+        for stage in kind.stages:
+            yield from ((_lever(measure) * stage.factor, slide) for slide in stage.slides)
+
+
+def _linear(contributor: Contributor, terms: Sequence[_ReadTerm], sums: _Sums, slid: _Slid) -> _Linear | None:
     own = [(term.amplitude, term.phase, term.rate) for term in terms if term.term.contributor is contributor]
     own += [_of_link(factor, one.rates[contributor.name]) for factor, one in sums if contributor.name in one.rates]
+    own += [(slid[contributor.name], 0.0, Fraction(0))] if contributor.name in slid else []
     if not own:
         return None
     law, draw = contributor.distribution, contributor.draw

@@ -12,6 +12,7 @@ import numpy as np
 
 from tol3d.gearing.effects import (
     AxesOffset,
+    AxialPlay,
     AxisOffset,
     AxisTilt,
     Clocking,
@@ -240,12 +241,13 @@ def _turned(contributor: Contributor, turns: tuple[Array, Array], *, per_y: floa
 @contributes(FlankDeviation)
 @contributes(LinkDeviation)
 @contributes(Clocking)
+@contributes(AxialPlay)
 @contributes(Temperature)
 def _nothing(effect: Effect, mesh: NominalMesh[GearPair], contributor: Contributor) -> Contribution:
     """No term of a sum.
 
     Of single flanks the pair that touches first decides, see tooth_pairs.py; no mesh sees links, nor how gears sit on
-    their shafts; a bevel pair of one material only scales as it grows.
+    their shafts and these slide; a bevel pair of one material only scales as it grows.
     """
     return NOTHING
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
@@ -16,7 +17,14 @@ from tol3d.gearing.grammar.parts import (
     InternalGearSpec,
     ShaftSpec,
 )
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, Nominal, Unit, in_direction
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
+    GearToleranceSpec,
+    Meaning,
+    Nominal,
+    Unit,
+    in_direction,
+    together,
+)
 from tol3d.gears import Gear, InternalGear
 from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.tooth_measures import OverBalls, OverPins, PinScale, Span, ToothMeasure
@@ -30,31 +38,47 @@ from tol3d.strict import Strict, refused
 from tol3d.units import Dimension
 
 
-class AxialShiftSpec(GearToleranceSpec):
-    """A length along the gear's own +z. It moves no flank of a spur pair with parallel axes; tilted ones feel it."""
+class AlongAxisSpec(GearToleranceSpec):
+    """A deviation that moves a gear along its axis, or a shaft with every gear on it."""
+
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec, ShaftSpec)
+
+    of: Name = Field(description="the gear, or the shaft with every gear on it")
+
+    @property
+    def along(self) -> float:
+        """Shift along the gear's or shaft's own +z per deviation."""
+        return 1.0
+
+    def meaning(self, nominal: Nominal) -> Meaning:
+        """The gear, or each on the shaft, moves along its axis: one that faces backward against its own z."""
+        if not isinstance(nominal.scene.parts[self.of], ShaftSpec):
+            return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0), factor=self.along))
+        own = nominal.carried_by(self.of)
+        return Meaning(together([AxisOffset(g.gear, (0.0, 0.0, float(g.sense)), factor=self.along) for g in own]))
+
+
+class AxialShiftSpec(AlongAxisSpec):
+    """A length along the gear's own +z, or the shaft's.
+
+    It moves no flank of a spur pair with parallel axes; tilted ones feel it. Helical gears open nothing either, they
+    screw: their mates turn by tan(beta)/r of it.
+    """
 
     kind: Literal["axial_shift"]
 
-    def meaning(self, nominal: Nominal) -> Meaning:
-        """The gear moves along its axis."""
-        return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0)))
 
-
-class MountingFaceSpec(GearToleranceSpec):
-    """Delta P, a length: the face lies off its true place, and the gear with it along its own +z.
+class MountingFaceSpec(AlongAxisSpec):
+    """Delta P, a length: the face lies off its true place, and the gear with it along its own +z, or the shaft.
 
     Each face of the stack (the gear's back, the housing's seat, an end cover) is a contributor of its own.
     """
 
     kind: Literal["mounting_face"]
 
-    def meaning(self, nominal: Nominal) -> Meaning:
-        """The gear moves along its axis."""
-        return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0)))
 
-
-class ShimSpec(GearToleranceSpec):
-    """The thickness of a shim, a length: constant, or with its own tolerance."""
+class ShimSpec(AlongAxisSpec):
+    """The thickness of a shim, a length: constant, or with its own tolerance; behind a gear, or a shaft."""
 
     kind: Literal["shim"]
     side: Literal["behind", "in_front"] = Field(
@@ -63,10 +87,14 @@ class ShimSpec(GearToleranceSpec):
         "in_front the other way",
     )
 
+    @property
+    def along(self) -> float:
+        """Behind the gear or shaft it moves it backward."""
+        return -1.0 if self.side == "behind" else 1.0
+
     def meaning(self, nominal: Nominal) -> Meaning:
-        """The gear moves along its axis; no shim is thinner than nothing."""
-        factor = -1.0 if self.side == "behind" else 1.0
-        return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0), factor=factor), least=0.0)
+        """No shim is thinner than nothing."""
+        return replace(super().meaning(nominal), least=0.0)
 
 
 class ClockingSpec(GearToleranceSpec):

@@ -1,0 +1,479 @@
+"""Helical trains: shafts that slide through their axial play, and gears that lie elsewhere along their axes.
+
+Against linear programmes over turns and shifts (`oracles.screw_chain`), against builds of the exact engine at both ends
+of their plays, and against numbers that follow by hand.
+"""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gear_trials import drawn_trials, form_of, gear_columns, measure_of, model_of_scene
+from oracles.screw_chain import Helical, Meshing, turn_between
+
+from tol3d.errors import SceneError
+from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.engines.gaps import exact_engine
+from tol3d.gearing.model import Model, Reading
+from tol3d.gearing.slopes.sensitivity import sensitivities
+from tol3d.study.system.trials import Trials
+
+ARCMIN = 10800 / math.pi  # in a radian
+SAME_TURN = 1e-9  # rad; where the exact engine's steps end, 1e-8 mm, at 20 mm and twice
+SOLVED = 2e-9  # rad; of the linear programmes: HiGHS keeps bounds within 1e-7 of the rows, which are in um of arcs
+
+OF_HAND = {1: "right", -1: "left"}
+FACING = {1: "forward", -1: "backward"}
+
+
+def helical(gear: Helical, width: float = 14.0) -> str:
+    beta = math.degrees(gear.helix)
+    kind = f"helical_gear, helix_angle: {beta!r} deg, hand: {OF_HAND[gear.hand]}" if gear.helix else "spur_gear"
+    return f"{{kind: {kind}, teeth: {gear.teeth}, module: {gear.module} mm, face_width: {width} mm}}"
+
+
+def chain(
+    gears: Mapping[str, Helical],
+    meshes: Mapping[str, tuple[str, str]],
+    tolerances: str,
+    folder: Path,
+    measures: str = "",
+    azimuths: Mapping[str, float] | None = None,
+) -> Model:
+    """A train of gears from the first mesh's driver shaft to the last one's driven shaft."""
+    azimuths = azimuths or {}
+    shafts = dict.fromkeys(gear.shaft for gear in gears.values())
+    lines = ["scene: chain", "parts:", *(f"  {name}: {helical(gear)}" for name, gear in gears.items())]
+    at = {"C": 30.0, "E": 60.0, "F": 60.0}  # along their shafts; a mesh puts faces side by side
+    for shaft in shafts:
+        own = (
+            f"{name}: {{facing: {FACING[gear.sense]}, at: {at.get(name, 0.0)} mm}}"
+            for name, gear in gears.items()
+            if gear.shaft == shaft
+        )
+        lines.append(f"  {shaft}: {{kind: shaft, carries: {{{', '.join(own)}}}}}")
+    lines += ["tolerances:", tolerances, "moves:"]
+    for name, (driver, driven) in meshes.items():
+        apart = gears[driver].radius + gears[driven].radius + 0.15
+        where = f"centre_distance: {apart!r} mm, azimuth: {azimuths.get(name, 33.0)} deg"
+        lines.append(f"  {name}: {{kind: mesh, driver: {driver}, driven: {driven}, {where}}}")
+    first, last = (list(shafts)[k] for k in (0, -1))
+    lines += [f"  train: {{kind: train, driven: {first}, output: {last}}}", "measures:"]
+    lines += ["  lost: {kind: lost_motion, of: train, over: {at: 20 deg}}", measures, "study: {trials: 10, seed: 3}"]
+    (path := folder / "chain.yaml").write_text("\n".join(line for line in lines if line))
+    return model_of_scene(path)
+
+
+def two_stages(hands: tuple[int, int], senses: tuple[int, int] = (1, -1)) -> dict[str, Helical]:
+    """A on one, B and C on two, D on three; other modules, helix angles and numbers of teeth."""
+    beta, gamma = math.radians(23.0), math.radians(14.0)
+    return {
+        "A": Helical("one", 21, 1.5, beta, hands[0]),
+        "B": Helical("two", 46, 1.5, beta, -hands[0], senses[0]),
+        "C": Helical("two", 19, 2.0, gamma, hands[1], senses[1]),
+        "D": Helical("three", 53, 2.0, gamma, -hands[1]),
+    }
+
+
+TWO = {"first": ("A", "B"), "second": ("C", "D")}
+
+
+def plays(**lengths: float) -> str:
+    """Axial plays of shafts [um], and thinner teeth."""
+    lines = [
+        f"  {shaft} play: {{kind: axial_play, of: {shaft}, distribution: {{kind: constant, value: {size} um}}}}"
+        for shaft, size in lengths.items()
+    ]
+    return "\n".join([*lines, "  thin: {kind: tooth_thickness, of: A, distribution: {kind: constant, value: -30 um}}"])
+
+
+def arcs(model: Model, gears: Mapping[str, Helical], thinner: float = 0.030) -> list[Meshing]:
+    """The meshes of a chain with the plays of their teeth, as arcs of the reference circles [mm]."""
+    found = []
+    for mesh in model.meshes:
+        driver, driven = gears[mesh.driver], gears[mesh.driven]
+        alpha_t = math.atan(math.tan(math.radians(20.0)) / math.cos(driver.helix))
+        apart = driver.radius + driven.radius + 0.15
+        working = math.acos((driver.radius + driven.radius) * math.cos(alpha_t) / apart)
+        involute = (math.tan(working) - working) - (math.tan(alpha_t) - alpha_t)
+        play = 2 * (driver.radius + driven.radius) * involute
+        thin = thinner / math.cos(driver.helix) if mesh.driver == "A" else 0.0
+        found.append(Meshing(driver, driven, play + thin))
+    return found
+
+
+def lost(model: Model) -> tuple[float, float]:
+    """Lost motion by the exact and the analytic method [rad]."""
+    columns = gear_columns(model, exact_engine(model), drawn_trials(model, 1, 0, 1))
+    return float(columns["geometric:lost"][0]) / ARCMIN, float(columns["analytic:lost"][0]) / ARCMIN
+
+
+# shafts that slide --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("hands", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+@pytest.mark.parametrize("senses", [(1, 1), (1, -1)])
+def test_a_train_of_two_meshes_turns_as_far_as_a_linear_programme(
+    hands: tuple[int, int], senses: tuple[int, int], tmp_path: Path
+) -> None:
+    gears, sizes = two_stages(hands, senses), {"one": 70.0, "two": 110.0, "three": 50.0}
+    model = chain(gears, TWO, plays(**sizes), tmp_path)
+    axial = {shaft: (-size / 2000, size / 2000) for shaft, size in sizes.items()}
+    low, high = turn_between(arcs(model, gears), "one", "three", axial)
+    least, most = turn_between(arcs(model, gears), "one", "three", {})
+    by_method = lost(model)
+    assert by_method == pytest.approx((high - low, high - low), abs=SOLVED)
+    assert high - low > most - least + 5e-4  # the plays turn the output by minutes
+
+
+@pytest.mark.parametrize(
+    ("shaft", "by_hand"),
+    [
+        ("one", math.tan(math.radians(23.0)) / (1.5 * 46 / math.cos(math.radians(23.0)) / 2) * 19 / 53),
+        ("three", math.tan(math.radians(14.0)) / (2.0 * 53 / math.cos(math.radians(14.0)) / 2)),
+    ],
+)
+def test_an_end_shaft_turns_its_mate_by_tan_beta_over_r(shaft: str, by_hand: float, tmp_path: Path) -> None:
+    still, sliding = (
+        lost(chain(two_stages((1, 1)), TWO, plays(**own), tmp_path)) for own in ({shaft: 0.0}, {shaft: 80.0})
+    )
+    assert np.subtract(sliding, still) == pytest.approx([0.08 * by_hand] * 2, abs=1e-12)
+
+
+@pytest.mark.parametrize(("hand", "sense"), [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+def test_gears_on_one_shaft_add_or_cancel_their_thrust_by_their_hands(hand: int, sense: int, tmp_path: Path) -> None:
+    """B is left on a shaft that C shares; a gear that looks backward keeps its hand."""
+    gears = two_stages((1, hand), (1, sense))
+    still, sliding = (lost(chain(gears, TWO, plays(two=size), tmp_path)) for size in (0.0, 80.0))
+    kappa = {name: gear.hand * math.tan(gear.helix) / gear.radius for name, gear in gears.items()}
+    turned = 0.08 * abs(kappa["B"] - kappa["C"]) * 19 / 53
+    assert np.subtract(sliding, still) == pytest.approx([turned] * 2, abs=1e-12)
+
+
+def test_equal_leads_and_hands_on_one_shaft_leave_no_thrust(tmp_path: Path) -> None:
+    """sin(beta)/(m z) of both equal."""
+    gears = two_stages((1, -1))
+    beta = math.asin(math.sin(gears["B"].helix) * 2.0 * 19 / (1.5 * 46))
+    gears |= {name: replace(gears[name], helix=beta) for name in ("C", "D")}
+    assert gears["B"].lead == pytest.approx(gears["C"].lead)
+    model = chain(gears, TWO, plays(two=80.0), tmp_path)
+    assert lost(model) == pytest.approx(lost(chain(gears, TWO, plays(two=0.0), tmp_path)), abs=1e-15)
+    assert [line for line in model.warnings if "two play" in line and "acts on nothing" in line]
+
+
+def test_an_idler_slides_and_turns_nothing(tmp_path: Path) -> None:
+    beta = math.radians(20.0)
+    gears = {
+        "A": Helical("one", 21, 1.5, beta, 1),
+        "B": Helical("two", 33, 1.5, beta, -1),
+        "F": Helical("three", 40, 1.5, beta, 1),
+    }
+    meshes = {"first": ("A", "B"), "second": ("B", "F")}
+    sizes = {"one": 40.0, "two": 110.0, "three": 60.0}
+    model = chain(gears, meshes, plays(**sizes), tmp_path)
+    axial = {shaft: (0.0, size / 1000) for shaft, size in sizes.items()}
+    low, high = turn_between(arcs(model, gears), "one", "three", axial)
+    assert lost(model) == pytest.approx((high - low,) * 2, abs=SOLVED)
+    assert "two" not in measure_of(model, "lost").kind.sliding
+    assert measure_of(model, "lost").kind.sliding == {"one", "three"}
+
+
+def test_held_elsewhere_and_read_in_the_middle_each_end_has_one_twist(tmp_path: Path) -> None:
+    sizes = {"one": 70.0, "two": 110.0, "three": 50.0}
+    middle = "  middle: {kind: lost_motion, of: train, shaft: two, over: {at: 0 deg}}"
+    gears = two_stages((1, 1))
+    model = chain(gears, TWO, plays(**sizes), tmp_path, middle)
+    axial = {shaft: (0.0, size / 1000) for shaft, size in sizes.items()}
+    low, high = turn_between(arcs(model, gears), "one", "two", axial)
+    columns = gear_columns(model, exact_engine(model), drawn_trials(model, 1, 0, 1))
+    for method in ("geometric", "analytic"):
+        assert columns[f"{method}:middle"][0] / ARCMIN == pytest.approx(high - low, abs=SOLVED)
+
+
+# with all that deviates ---------------------------------------------------------------------------------------------
+
+DEVIATING = """\
+  thin: {kind: tooth_thickness, of: A, distribution: {kind: normal, lower: -40 um, upper: -20 um}}
+  A off: {kind: eccentricity, of: A, distribution: {kind: rayleigh, scale: 5 um}}
+  B off: {kind: eccentricity, of: B, distribution: {kind: rayleigh, scale: 6 um}}
+  D off: {kind: eccentricity, of: D, distribution: {kind: rayleigh, scale: 7 um}}
+  lean: {kind: axis_out_of_plane, of: second, distribution: {kind: normal, lower: -0.2 mrad, upper: 0.2 mrad}}
+"""
+SHIFTS = "\n".join(
+    f"  {shaft} shift: {{kind: axial_shift, of: {shaft}, distribution: {{kind: constant, value: 0 um}}}}"
+    for shaft in ("one", "two", "three")
+)
+DRAWN_PLAYS = "\n".join(
+    f"  {shaft} play: {{kind: axial_play, of: {shaft}, distribution: {{kind: uniform, lower: 20 um, upper: 120 um}}}}"
+    for shaft in ("one", "two", "three")
+)
+
+
+def seated_turn(model: Model, trials: Trials, side: int) -> np.ndarray:
+    """Where the output rests on one side [rad], counted from the middle: rests of both meshes, the shafts as shifted.
+
+    Right flanks of A push B counter-clockwise, whose mate C then pushes with its left ones.
+    """
+    engine = ExactEngine(model)
+    made, total = engine.build(trials.deviations), np.zeros(len(trials))
+    for mesh, rate, flank in zip(model.meshes, (-19 / 53, 1.0), (side, -side), strict=True):
+        reading = Reading(flank="drive" if flank == mesh.working_flank else "back")
+        found = engine.read(made, mesh, reading, trials.positions[mesh.name])
+        turned = found.driven_angle - mesh.pair.driven_angle(trials.positions[mesh.name])
+        total += rate * turned
+    return total
+
+
+def test_of_built_gears_the_lost_motion_is_the_longest_way_between_the_ends_of_all_plays(tmp_path: Path) -> None:
+    """Every combination of ends of three shafts is built and seated on both sides; both methods find the longest way.
+
+    C faces forward, so that the turn of B is that of C. The methods take the play of teeth in the middle of the axial
+    plays: a lean and 0.1 mm of play change it by 0.02 um.
+    """
+    gears = two_stages((1, 1), (1, 1))
+    model = chain(gears, TWO, "\n".join([DEVIATING, SHIFTS, DRAWN_PLAYS]), tmp_path)
+    trials = drawn_trials(model, 1, 0, 40)
+    columns = gear_columns(model, exact_engine(model), trials)
+    turns = {mesh.name: model.layout.mesh_turn[mesh.name] for mesh in model.meshes}
+    positions = {name: np.full(40, turning.at(math.radians(20.0))) for name, turning in turns.items()}
+    slices = model.component_slices
+    ends: dict[int, list[np.ndarray]] = {1: [], -1: []}
+    for signs in np.stack(np.meshgrid(*3 * [[-0.5, 0.5]]), axis=-1).reshape(-1, 3):
+        deviations = trials.deviations.copy()
+        for shaft, sign in zip(("one", "two", "three"), signs, strict=True):
+            deviations[:, slices[f"{shaft} shift"]] = sign * deviations[:, slices[f"{shaft} play"]]
+        for side, rests in ends.items():
+            rests.append(seated_turn(model, Trials(deviations, positions), side))
+    right, left = np.array(ends[1]), np.array(ends[-1])
+    longest = np.maximum((right[:, None] - left).max(axis=(0, 1)), (left[:, None] - right).max(axis=(0, 1)))
+    assert columns["geometric:lost"] / ARCMIN == pytest.approx(longest, abs=1e-6)  # rad; 0.05 um at 53 mm
+    assert columns["analytic:lost"] / ARCMIN == pytest.approx(longest, abs=3e-6)  # squares of deviations too
+
+
+# measures -----------------------------------------------------------------------------------------------------------
+
+PAIR = """\
+  free: {kind: angular_backlash, of: second, over: {at: 10 deg}}
+  free driver: {kind: angular_backlash, of: second, gear: C, over: {at: 10 deg}}
+  arc: {kind: circumferential_backlash, of: second, over: {at: 10 deg}}
+  normal: {kind: normal_backlash, of: second, over: {at: 10 deg}}
+"""
+
+
+def test_an_angular_backlash_grows_by_the_plays_of_both_shafts_and_what_is_of_teeth_stays(tmp_path: Path) -> None:
+    gears = two_stages((1, 1))
+    columns = []
+    for sizes in ({"two": 0.0, "three": 0.0}, {"two": 110.0, "three": 50.0}):
+        model = chain(gears, TWO, plays(**sizes), tmp_path, PAIR)
+        columns.append(gear_columns(model, exact_engine(model), drawn_trials(model, 1, 0, 1)))
+    for method in ("geometric", "analytic"):
+        by = {
+            name: float(columns[1][f"{method}:{name}"][0] - columns[0][f"{method}:{name}"][0])
+            for name in ("free", "free driver", "arc", "normal")
+        }
+        assert by["normal"] == by["arc"] == 0.0
+        for name, gear in (("free", gears["D"]), ("free driver", gears["C"])):
+            assert by[name] / ARCMIN == pytest.approx(0.160 * math.tan(gear.helix) / gear.radius, abs=1e-12)
+
+
+def test_worked_numbers_of_one_mesh_are_c_sin_beta_b_along_the_normals_and_c_tan_beta_as_an_arc(tmp_path: Path) -> None:
+    """23 right with 67 left, m_n 1, 30 deg: 0.1 mm turn the wheel by 1.4925 mrad, 46.985 um along the normals."""
+    gears = {"A": Helical("one", 23, 1.0, math.radians(30.0), 1), "B": Helical("two", 67, 1.0, math.radians(30.0), -1)}
+    still, sliding = (lost(chain(gears, {"first": ("A", "B")}, plays(two=size), tmp_path)) for size in (0.0, 100.0))
+    model = chain(gears, {"first": ("A", "B")}, plays(two=100.0), tmp_path)
+    turned = np.subtract(sliding, still)
+    assert turned == pytest.approx([1.492537e-3] * 2, abs=1e-9)
+    wheel = model.meshes[0].pair.wheel
+    assert turned * wheel.section_arm == pytest.approx([0.1 * math.sin(wheel.base_helix_angle)] * 2, abs=1e-12)
+    assert turned * gears["B"].radius == pytest.approx([0.1 * math.tan(math.radians(30.0))] * 2, abs=1e-12)
+
+
+def test_closed_form_shares_and_slopes_know_axial_play(tmp_path: Path) -> None:
+    gears = two_stages((1, -1))
+    free = "  free: {kind: angular_backlash, of: second}"
+    model = chain(gears, TWO, "\n".join([DEVIATING.replace("_out_of_plane", "_in_plane"), DRAWN_PLAYS]), tmp_path, free)
+    kappa = {name: gear.hand * math.tan(gear.helix) / gear.radius for name, gear in gears.items()}
+    per = {
+        "one play": abs(kappa["A"]) * 21 / 46 * 19 / 53,
+        "two play": abs(kappa["B"] - kappa["C"]) * 19 / 53,
+        "three play": abs(kappa["D"]),
+    }
+    form = form_of(model, "lost")
+    known = {share.name: share for share in form.shares}
+    for name, slope in per.items():
+        assert known[name].coefficient == pytest.approx(slope, rel=1e-12)
+        assert known[name].mean == pytest.approx(slope * 0.07, rel=1e-12)
+        assert known[name].variance == pytest.approx(slope**2 * 0.1**2 / 12, rel=1e-12)
+    trials = drawn_trials(model, 1, 0, 3)
+    for measure, wanted in (
+        ("lost", per),
+        ("free", {"one play": 0.0, "two play": abs(kappa["D"]), "three play": abs(kappa["D"])}),
+    ):
+        rates = sensitivities(model, ExactEngine(model), trials, measure_of(model, measure))
+        for name, slope in wanted.items():
+            assert rates[:, model.component_slices[name]] == pytest.approx(slope, rel=1e-12, abs=1e-15)
+    free_form = {share.name: share.coefficient for share in form_of(model, "free").shares}
+    assert "one play" not in free_form
+    assert free_form["two play"] == pytest.approx(abs(kappa["D"]))
+
+
+def test_stages_of_a_breakdown_contain_the_shafts_that_they_drive(tmp_path: Path) -> None:
+    """The held shaft is the first stage's; stages times their factors are the lost motion."""
+    gears = two_stages((1, 1))
+    kappa = {name: gear.hand * math.tan(gear.helix) / gear.radius for name, gear in gears.items()}
+    stages = []
+    for sizes in ({"one": 0.0, "two": 0.0, "three": 0.0}, {"one": 70.0, "two": 110.0, "three": 50.0}):
+        model = chain(gears, TWO, plays(**sizes), tmp_path)
+        measure = measure_of(model, "lost")
+        model = replace(model, measures=(replace(measure, positions=replace(measure.positions, over="random")),))
+        columns = gear_columns(model, exact_engine(model), drawn_trials(model, 1, 0, 1))
+        own = [float(columns[f"geometric:lost:{name} [arcmin]"][0]) / ARCMIN for name in ("first", "second")]
+        assert float(columns["geometric:lost"][0]) / ARCMIN == pytest.approx(own[0] * 19 / 53 + own[1], rel=1e-12)
+        stages.append(own)
+    wanted = 0.070 * abs(kappa["A"]) * 21 / 46 + 0.110 * abs(kappa["B"] - kappa["C"]), 0.050 * abs(kappa["D"])
+    assert np.subtract(stages[1], stages[0]) == pytest.approx(wanted, abs=2e-9)
+
+
+def test_a_reducer_takes_no_thrust(tmp_path: Path) -> None:
+    """A shaft between a mesh and a bought reducer slides as an end shaft does."""
+    gears = {"A": Helical("one", 21, 1.5, math.radians(23.0), 1), "B": Helical("two", 46, 1.5, math.radians(23.0), -1)}
+    path = tmp_path / "reducer.yaml"
+    chain(gears, {"first": ("A", "B")}, plays(two=80.0), tmp_path)
+    text = (tmp_path / "chain.yaml").read_text()
+    text = text.replace("  two: {kind: shaft", "  three: {kind: shaft}\n  two: {kind: shaft")
+    text = text.replace(
+        "  train: {kind: train, driven: one, output: two}",
+        "  bought: {kind: reducer, driver: two, driven: three, ratio: -50}\n"
+        "  train: {kind: train, driven: one, output: three}",
+    )
+    path.write_text(text)
+    found = lost(model_of_scene(path))
+    path.write_text(text.replace("value: 80.0 um", "value: 0.0 um"))
+    still = lost(model_of_scene(path))
+    wanted = 0.08 * math.tan(gears["B"].helix) / gears["B"].radius / 50
+    assert np.subtract(found, still) == pytest.approx([wanted] * 2, abs=1e-12)
+
+
+# what is refused, and what acts on nothing ----------------------------------------------------------------------------
+
+
+def test_axial_play_of_spur_shafts_acts_on_nothing_and_check_says_so(tmp_path: Path) -> None:
+    gears = {name: replace(gear, helix=0.0) for name, gear in two_stages((1, 1)).items()}
+    model = chain(gears, TWO, plays(two=80.0), tmp_path)
+    (warning,) = (line for line in model.warnings if "two play" in line)
+    assert "tolerances.two play: acts on nothing: no gear on 'two' is helical" in warning
+    assert lost(model) == lost(chain(gears, TWO, plays(two=0.0), tmp_path))
+    assert not measure_of(model, "lost").kind.sliding
+
+
+def test_axial_play_that_nothing_measures_is_told(tmp_path: Path) -> None:
+    model = chain(two_stages((1, 1)), TWO, plays(two=80.0), tmp_path)
+    path = tmp_path / "chain.yaml"
+    path.write_text(
+        path.read_text().replace("lost: {kind: lost_motion, of: train", "n: {kind: normal_backlash, of: first")
+    )
+    warnings = model_of_scene(path).warnings
+    assert [line for line in warnings if "two play: acts on nothing: no angular backlash, lost motion" in line]
+    assert not [line for line in model.warnings if "two play" in line]
+
+
+def test_a_second_axial_play_of_a_shaft_is_refused(tmp_path: Path) -> None:
+    chain(two_stages((1, 1)), TWO, plays(two=80.0), tmp_path)
+    path = tmp_path / "chain.yaml"
+    text = path.read_text().replace("tolerances:", "  left: {kind: bearing, shaft: two}\ntolerances:")
+    path.write_text(text.replace("of: two,", "of: left,"))
+    assert measure_of(model_of_scene(path), "lost").kind.sliding == {"two"}
+    second = "  again: {kind: axial_play, of: left, distribution: {kind: constant, value: 10 um}}\nmoves:"
+    path.write_text(text.replace("moves:", second))
+    with pytest.raises(SceneError, match="expected one axial play of 'two', got another one beside 'two play'"):
+        model_of_scene(path)
+
+
+@pytest.mark.parametrize(
+    ("of", "words"),
+    [
+        ("nowhere", "a shaft, of a gear that none carries, or of a bearing"),
+        ("A", "which 'one' carries"),
+        ("first", "a shaft, of a gear that none carries, or of a bearing"),
+        ("bare", "expected a shaft with a gear on it, or a bearing of one, got 'bare'"),
+    ],
+)
+def test_axial_play_is_of_shafts(of: str, words: str, tmp_path: Path) -> None:
+    chain(two_stages((1, 1)), TWO, plays(two=80.0), tmp_path)
+    path = tmp_path / "chain.yaml"
+    text = path.read_text().replace("tolerances:", "  bare: {kind: shaft}\ntolerances:")
+    path.write_text(text.replace("kind: axial_play, of: two", f"kind: axial_play, of: {of}"))
+    with pytest.raises(SceneError, match=re.escape(words)):
+        model_of_scene(path)
+
+
+def test_axial_play_of_bevel_gears_is_refused(tmp_path: Path) -> None:
+    text = """\
+scene: bevel
+parts:
+  a: {kind: bevel_gear, teeth: 20, module: 2 mm, face_width: 8 mm}
+  b: {kind: bevel_gear, teeth: 30, module: 2 mm, face_width: 8 mm}
+tolerances:
+  play: {kind: axial_play, of: a, distribution: {kind: constant, value: 10 um}}
+moves:
+  m: {kind: bevel_mesh, driver: a, driven: b}
+measures:
+  n: {kind: normal_backlash, of: m}
+study: {trials: 10, seed: 1}
+"""
+    (path := tmp_path / "bevel.yaml").write_text(text)
+    with pytest.raises(SceneError, match=r"tolerances\.play\.of: expected a shaft without bevel gears"):
+        model_of_scene(path)
+
+
+# parallel load paths ------------------------------------------------------------------------------------------------
+
+
+def herringbone(shift: str, folder: Path, other: int = 1) -> tuple[Model, dict[str, Helical]]:
+    """Two meshes of opposite hands between two shafts, the second looser; one shaft lies elsewhere along its axis."""
+    beta = math.radians(25.0)
+    gears = {
+        "A": Helical("one", 24, 2.0, beta, 1),
+        "B": Helical("two", 47, 2.0, beta, -1),
+        "E": Helical("one", 24, 2.0, beta, -other),
+        "F": Helical("two", 47, 2.0, beta, other),
+    }
+    meshes = {"upper": ("A", "B"), "lower": ("E", "F")}
+    model = chain(gears, meshes, f"{shift}\n{plays()}", folder)
+    return model, gears
+
+
+def test_load_paths_of_a_herringbone_shift_against_each_other_as_a_shaft_does(tmp_path: Path) -> None:
+    """At a fixed place along its axis: the linear programme with that shift, by both methods."""
+    shift = "  shift: {kind: axial_shift, of: two, distribution: {kind: constant, value: 40 um}}"
+    for of, um in (("two", 40.0), ("two", -30.0), ("one", 40.0)):
+        text = shift.replace("of: two", f"of: {of}").replace("40 um", f"{um} um")
+        model, gears = herringbone(text, tmp_path)
+        low, high = turn_between(arcs(model, gears), "one", "two", {of: (um / 1000, um / 1000)})
+        assert lost(model) == pytest.approx((high - low,) * 2, abs=SOLVED)
+    still = lost(herringbone("", tmp_path)[0])
+    assert lost(herringbone(shift, tmp_path)[0])[0] < still[0] - 1e-5
+
+
+def test_one_gear_of_a_shaft_that_lies_elsewhere_closes_by_its_screw(tmp_path: Path) -> None:
+    """A shim behind F alone shifts the play of its path by kappa of its thickness; of equal hands likewise."""
+    for other in (1, -1):
+        shim = "  shim: {kind: shim, of: F, distribution: {kind: constant, value: 30 um}}"
+        model, gears = herringbone(shim, tmp_path, other)
+        own = arcs(model, gears)
+        separate = {**gears, "F": replace(gears["F"], shaft="F"), "B": gears["B"]}
+        kappa = separate["F"].hand * math.tan(separate["F"].helix) / separate["F"].radius
+        half = [mesh.play / 2 / mesh.driven.radius for mesh in own]
+        middle = kappa * -0.030  # behind: it moves against its z
+        wanted = min(half[0], half[1] + middle) - max(-half[0], -half[1] + middle)
+        assert lost(model) == pytest.approx((wanted, wanted), abs=SAME_TURN)
+
+
+def test_axial_play_between_parallel_load_paths_is_refused(tmp_path: Path) -> None:
+    play = "  play: {kind: axial_play, of: two, distribution: {kind: constant, value: 30 um}}"
+    with pytest.raises(SceneError, match=r"play\.of: expected a shaft in one load path, got 'two', at which"):
+        herringbone(play, tmp_path)

@@ -1,0 +1,119 @@
+"""Shafts that slide through their axial play, as helical gears make them do, and by how much that turns a train.
+
+A gear of twist kappa = tan(beta)/r, right hand positive, that slides by dz in the teeth of a mate at rest screws by
+kappa dz and opens no gap. So the thrust of a mesh on its gear is -kappa T, T its torque; where T changes
+sides, the shaft moves the way it yields. Of a shaft with the meshes "in" and "out", whose torques are opposite, the
+thrust is -T (kappa_in - kappa_out), and its play c turns what it drives by c |kappa_in - kappa_out| more, whichever of
+the two is larger and whichever side comes first: the optimum of the linear programme over all turns and shifts. A shaft
+at an end of the train has one mesh, an idler the same twist twice. Friction beyond the thrust, springs and weights that
+hold the shaft are left out: they make it less.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
+
+from tol3d.gearing.model.links import Link, LoadPath, Parallel, links_of
+from tol3d.gearing.model.measure import Slide
+from tol3d.gearing.model.model import Model
+from tol3d.gearing.shafts import Mesh
+from tol3d.scene import Scene
+
+SAME_LEAD: Final = 1e-9  # of a twist; gears drawn for one lead differ by the digits of their helix angles
+
+
+def sliding_shafts(model: Model) -> tuple[str, ...]:
+    """Shafts with axial play, in the order of the contributors."""
+    shafts = dict.fromkeys(shaft for shaft, _ in model.layout.carrying.values())
+    acting = [contributor.effect for contributor in model.contributors]
+    return tuple(shaft for shaft in shafts if any(effect.slides(shaft) for effect in acting))
+
+
+def slides_of_mesh(model: Model, mesh: Mesh, gear: str) -> tuple[Slide, ...]:
+    """Turns of one gear of a mesh, the other one held: the twist of the one that turns, whichever slides."""
+    twist = abs(mesh.gear(gear).twist)
+    shafts = [model.layout.carrying[own][0] for own in (mesh.driver, mesh.driven)]
+    sliding = sliding_shafts(model) if twist else ()
+    return tuple(Slide(shaft, twist) for shaft in shafts if shaft in sliding)
+
+
+def slides_along(model: Model, path: LoadPath) -> Mapping[str, tuple[Slide, ...]]:
+    """Turns by the shafts of a load path, by the mesh at which each counts: at the shaft which that drives."""
+    found: dict[str, tuple[Slide, ...]] = {}
+    for shaft in sliding_shafts(model):
+        meshes = [mesh for element in _at(path, shaft) for mesh in model.meshes if mesh.name == element.name]
+        if not (twist := _unbalanced([_twist(model, mesh, shaft) for mesh in meshes])):
+            continue
+        driving = (mesh for mesh in meshes if model.layout.carrying[mesh.driven][0] == shaft)
+        mesh = next(driving, meshes[0])
+        rate = 1.0 if model.layout.carrying[mesh.driven][0] == shaft else abs(float(mesh.rate))
+        found[mesh.name] = (*found.get(mesh.name, ()), Slide(shaft, rate * twist))
+    return found
+
+
+def _unbalanced(twists: Sequence[float]) -> float:
+    """Size of the twist by which a shaft of one or two meshes slides; 0 of one whose thrusts cancel."""
+    left = abs(twists[0] - twists[1]) if len(twists) == 2 else abs(sum(twists))
+    return left if left > SAME_LEAD * max(map(abs, twists), default=0.0) else 0.0
+
+
+def _twist(model: Model, mesh: Mesh, shaft: str) -> float:
+    """Twist of the gear of a mesh that sits on a shaft [rad/mm]."""
+    on_it = mesh.driver if model.layout.carrying[mesh.driver][0] == shaft else mesh.driven
+    return mesh.gear(on_it).twist
+
+
+def _at(path: LoadPath, shaft: str) -> list[Link | Parallel]:
+    """The elements of a load path that meet at a shaft."""
+    return [element for element in path if any(shaft in _shafts(link) for link in links_of((element,)))]
+
+
+def _shafts(link: Link) -> tuple[str, ...]:
+    return link.shafts if link.carrier is None else (*link.shafts, link.carrier)
+
+
+def refuse_shared_thrust(scene: Scene, model: Model) -> None:
+    """Refuse helical shafts with axial play at which load paths part or join: they would share the thrust.
+
+    Raises:
+        SceneError: at the tolerance.
+    """
+    for contributor in model.contributors:
+        for shaft in filter(contributor.effect.slides, sliding_shafts(model)):
+            for path in _paths(model):
+                met = _at(path, shaft)
+                helical = any(
+                    mesh.pair.pinion.twist
+                    for mesh in model.meshes
+                    if mesh.name in {link.name for link in links_of(tuple(met))}
+                )
+                if helical and (len(met) > 2 or any(isinstance(element, Parallel) for element in met)):
+                    words = f"expected a shaft in one load path, got {shaft!r}, at which several meet: "
+                    advice = "how they share its thrust is not simulated; hold it along its axis"
+                    raise scene.refuse(("tolerances", contributor.name, "of"), f"{words}{advice}")
+
+
+def _paths(model: Model) -> Iterator[LoadPath]:
+    """Load paths of the trains, and of their measures at other shafts."""
+    ends = {(train.held, train.output) for train in model.trains}
+    for measure in model.measures:
+        if (shaft := getattr(measure.kind, "shaft", None)) is not None:
+            ends.add((getattr(measure.kind, "held", ""), shaft))
+    return (model.layout.load_path(held, shaft) for held, shaft in sorted(ends))
+
+
+def idle_slides(model: Model) -> Iterator[tuple[str, str]]:
+    """Axial plays that no measure reads, with the reason."""
+    read = {shaft for measure in model.measures for shaft in measure.kind.sliding}
+    for contributor in model.contributors:
+        if contributor.kind != "axial_play":
+            continue
+        for shaft in filter(contributor.effect.slides, sliding_shafts(model)):
+            if shaft in read:
+                continue
+            gears = {gear for gear, (carrier, _) in model.layout.carrying.items() if carrier == shaft}
+            twists = [mesh.gear(gear).twist for mesh in model.meshes for gear in gears & {mesh.driver, mesh.driven}]
+            if not any(twists):
+                yield contributor.name, f"acts on nothing: no gear on {shaft!r} is helical, and spur gears do not screw"
+            else:
+                words = "no angular backlash, lost motion or swing is measured that depends on it, or thrusts of equal "
+                yield contributor.name, f"acts on nothing: {words}leads and hands cancel on {shaft!r}"
