@@ -199,8 +199,8 @@ class OverBalls(OverPins):
 
 ToothMeasure = Span | OverPins
 
-NO_SPAN: Final = "an internal helical gear has no span, its flanks are hollow and its spaces lean: measure between balls"
-NO_PINS: Final = "a straight pin does not lie in a space of an internal helical gear, it cuts the flanks: measure balls"
+NO_SPAN: Final = "an internal helical gear has no span, its flanks are hollow: measure between balls"
+NO_PINS: Final = "straight pins cut the flanks of an internal helical gear: measure between balls"
 
 
 def _has_balls_alone(gear: CylindricalGear) -> bool:

@@ -279,9 +279,7 @@ def screw_line_of_action(
     low, high = max(own.low, mate.low - pose.z), min(own.high, mate.high - pose.z)
     fall = own_sense * sigma * own.twist
     low, high = between(low, high, profile, fall, own.begin, own.end)
-    low, high = between(
-        low, high, mate_profile, mate_sense * sigma * mate.twist, mate.begin, mate.end - max(turn, 0.0)
-    )
+    low, high = between(low, high, mate_profile, mate_sense * sigma * mate.twist, mate.begin, mate.end - max(turn, 0.0))
     if low > high:
         return nowhere
     at = min(max(face, low), high)
