@@ -11,9 +11,9 @@ from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, T
 from tol3d.gearing.grammar.parts import (
     ExternalGearSpec,
     GearSpec,
-    HelicalGearSpec,
     InternalGearSpec,
     ShaftSpec,
+    helix_of,
 )
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, Nominal, Unit, in_direction
 from tol3d.gears import Gear, InternalGear
@@ -204,8 +204,7 @@ class ToothThicknessSpec(GearToleranceSpec):
             return None
         if not isinstance(gear, ExternalGearSpec | InternalGearSpec):
             return None
-        helix = gear.helix_angle.internal if isinstance(gear, HelicalGearSpec) else 0.0
-        return gear.teeth * gear.module.internal / math.cos(helix)
+        return gear.teeth * gear.module.internal / math.cos(helix_of(gear)[0])
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""
