@@ -1,4 +1,7 @@
-"""The solid of an internal spur gear: a round rim, exact arcs, flanks as splines over the roll angle."""
+"""The solid of an internal spur or helical gear: a round rim, exact arcs, flanks as splines over the roll angle.
+
+A helical gear's transverse section is swept along its helices, see twisted_solid.py.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -23,6 +26,7 @@ from tol3d.parts.tooth_edges import (
     turned,
     vertex,
 )
+from tol3d.parts.twisted_solid import swept
 
 Place = Literal["bottom", "form", "tip"]
 _Corners = dict[tuple[Flank, Place], TopoDS_Vertex]
@@ -33,19 +37,33 @@ def build(gear: InternalGear) -> NamedSolid:
 
     Faces: for tooth k (counted counter-clockwise) "tooth k tip" and, with right and left, "tooth k right flank" and
     "... fillet"; "space k root" between teeth k and k+1, unless a full round leaves none; "rim"; "front" (+z) and
-    "back". The u parameter of a flank's face is the roll angle [rad]; it leaves the involute by at most FLANK_ERROR.
+    "back". The u parameter of a flank's face is the roll angle [rad], of a helical gear v is z, and it leaves the
+    involute by at most FLANK_ERROR.
 
     Raises:
         GeometryError: no valid solid comes of it.
     """
+    return swept(gear, [_rim(gear)], [list(_outline(gear))])
+
+
+def build_straight(gear: InternalGear) -> NamedSolid:
+    """The ring with its transverse section swept straight along z; of a spur gear the same as `build`.
+
+    Raises:
+        GeometryError: no valid solid comes of it.
+    """
+    return extruded([_rim(gear)], [list(_outline(gear))], gear.face_width)
+
+
+def _rim(gear: InternalGear) -> NamedEdge:
     outside = circle(gear, (0.0, 0.0), gear.rim_diameter / 2)
-    rim = NamedEdge("rim", cq.Edge(BRepBuilderAPI_MakeEdge(outside).Edge()))
-    return extruded([rim], [list(_outline(gear))], gear.face_width)
+    return NamedEdge("rim", cq.Edge(BRepBuilderAPI_MakeEdge(outside).Edge()))
 
 
 def build_tooth(gear: InternalGear) -> NamedSolid:
     """Tooth 0 alone, cut out of the rim behind its fillets' ends: its faces are those of `build` to the last bit.
 
+    Those of a helical ring are within the error of its helices, see twisted_solid.py, whose rim has finer ones.
     For gears of so many teeth that all of them would take minutes and gigabytes. The faces behind it are "cut" and
     "right cut", "left cut" beside it.
 
@@ -62,7 +80,7 @@ def build_tooth(gear: InternalGear) -> NamedSolid:
         ("left cut", behind[LEFT], corners[LEFT, "bottom"]),
     )
     cut = [NamedEdge(name, cq.Edge(BRepBuilderAPI_MakeEdge(begin, end).Edge())) for name, begin, end in lines]
-    return extruded([*cut, *_tooth(gear, 0, sides, corners)], [], gear.face_width)
+    return swept(gear, [*cut, *_tooth(gear, 0, sides, corners)], [])
 
 
 # outline ------------------------------------------------------------------------------------------

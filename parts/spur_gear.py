@@ -12,7 +12,7 @@ from tol3d.gears import LEFT, RIGHT, SpurGear
 from tol3d.parts.named_solid import NamedEdge, NamedSolid, extruded
 from tol3d.parts.spur_tooth import Tooth, corners_of, sides_of
 from tol3d.parts.tooth_edges import SHORTEST_EDGE, arc, circle
-from tol3d.parts.twisted_solid import twisted
+from tol3d.parts.twisted_solid import swept
 
 
 def build(gear: SpurGear) -> NamedSolid:
@@ -27,7 +27,7 @@ def build(gear: SpurGear) -> NamedSolid:
     Raises:
         GeometryError: no valid solid comes of it.
     """
-    return _swept(gear, list(_outline(gear)), _bore(gear))
+    return swept(gear, list(_outline(gear)), _bore(gear))
 
 
 def build_straight(gear: SpurGear) -> NamedSolid:
@@ -41,12 +41,6 @@ def build_straight(gear: SpurGear) -> NamedSolid:
 
 def _bore(gear: SpurGear) -> list[list[NamedEdge]]:
     return [[NamedEdge("bore", _hole(gear))]] if gear.bore > 0.0 else []
-
-
-def _swept(gear: SpurGear, outline: list[NamedEdge], holes: list[list[NamedEdge]]) -> NamedSolid:
-    if gear.helix_angle:
-        return twisted(outline, holes, gear.face_width, gear.twist)
-    return extruded(outline, holes, gear.face_width)
 
 
 def build_tooth(gear: SpurGear) -> NamedSolid:
@@ -63,7 +57,7 @@ def build_tooth(gear: SpurGear) -> NamedSolid:
     tip = arc("tooth 0 tip", circle(gear, (0.0, 0.0), gear.tip_radius), corners[RIGHT, "tip"], corners[LEFT, "tip"])
     chord = BRepBuilderAPI_MakeEdge(corners[LEFT, "bottom"], corners[RIGHT, "bottom"]).Edge()
     outline = [*tooth.rising(), tip, *tooth.falling(), NamedEdge("cut", cq.Edge(chord))]
-    return _swept(gear, outline, [])
+    return swept(gear, outline, [])
 
 
 # outline ------------------------------------------------------------------------------------------

@@ -1,67 +1,22 @@
 """The exact engine on helical gears: worked cases of a search of two screw surfaces, limits, mirrors, the stack-up."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.screw_flanks import Placed, ScrewGear, lag
-from scipy.spatial.transform import Rotation
+from helical_places import Places, least_lag, mirrored, random_places, read
+from oracles.screw_flanks import ScrewGear
 
 from tol3d.errors import GeometryError
-from tol3d.gearing.builds.build import Build
-from tol3d.gearing.engines import MeshReading
-from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.model import Mesh, Model, Reading
-from tol3d.gearing.model.model import GearPart
 from tol3d.gearing.stack_up.contact_lines import ContactLines
 from tol3d.gears import LEFT, LEFT_HAND, RIGHT, RIGHT_HAND, Flank, Hand, SpurGear, SpurPair
-from tol3d.numerics.arrays import Array
 
 ALPHA = math.radians(20.0)
 CLOSED_FORM = 1e-9  # mm
 SEARCH = 1e-6  # mm; what the search of the worked cases and the engine's last steps leave
 UM = 1e-3  # mm
 URAD = 1e-6
-BOTH = frozenset(("driver", "driven"))
-
-Pairs = tuple[tuple[float, float], tuple[float, float]]
-
-
-@dataclass(frozen=True)
-class Places:
-    """Deviations of driver and driven gear: shifts [mm], tilts (in, out) [rad], centres (length [mm], azimuth)."""
-
-    shifts: Sequence[Sequence[float]] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    tilts: Pairs = ((0.0, 0.0), (0.0, 0.0))
-    centres: Pairs = ((0.0, 0.0), (0.0, 0.0))
-
-    def rotations(self) -> list[Array]:
-        """Of both axes, about their face centres."""
-        vectors = ([-out, along, 0.0] for along, out in self.tilts)
-        return [Rotation.from_rotvec(vector).as_matrix() for vector in vectors]
-
-    def off_axis(self) -> list[tuple[float, float]]:
-        """Centres (x, y) in the gears' frames [mm]."""
-        return [(e * math.cos(azimuth), e * math.sin(azimuth)) for e, azimuth in self.centres]
-
-
-def model_of(pair: SpurPair, flank: Flank) -> Model:
-    """A model of one mesh."""
-    gears = (GearPart("driver", pair.pinion), GearPart("driven", pair.wheel))
-    return Model("m", gears, (), (), (Mesh("mesh", "driver", "driven", pair, flank),), ())
-
-
-def read(pair: SpurPair, angle: float, flank: Flank, places: Places) -> MeshReading:
-    """One build brought to contact and read."""
-    model, shafts = model_of(pair, flank), np.tile(np.eye(4), (1, 2, 1, 1))
-    for seat, rotation in enumerate(places.rotations()):
-        shafts[0, seat, :3, :3], shafts[0, seat, :3, 3] = rotation, places.shifts[seat]
-    shafts[0, 1, :3, 3] += pair.wheel_origin
-    vectors = np.array([[[-out, along, 0.0] for along, out in places.tilts]])
-    made = Build(shafts, np.array([places.off_axis()]), vectors, np.zeros((1, 2)), np.zeros((1, 2)), np.ones((1, 2)))
-    return ExactEngine(model).read(made, model.meshes[0], Reading(), np.array([angle]), BOTH)
 
 
 def base_pair(centre_distance: float = 53.0, shift: float = 0.5441135839) -> SpurPair:
@@ -124,19 +79,6 @@ def test_a_tilted_axis_touches_at_the_end_of_the_face_on_the_tooth_of_the_worked
     assert found.tooth[0] == -5
 
 
-def random_places(rng: np.random.Generator, size: float = 1.0) -> Places:
-    """Shifts of some um, tilts of some tenths of a mrad, and eccentricities."""
-    shifts = rng.uniform(-1, 1, (2, 3)) * np.array([0.01, 0.01, 0.3]) * size
-    tilts = rng.uniform(-3e-4, 3e-4, (2, 2)) * size
-    centres = np.stack([rng.uniform(0, 0.015, 2) * size, rng.uniform(0, 2 * math.pi, 2)], axis=-1)
-    return Places(shifts.tolist(), _pairs(tilts), _pairs(centres))
-
-
-def _pairs(values: Array) -> Pairs:
-    (a, b), (c, d) = values.tolist()
-    return (a, b), (c, d)
-
-
 def random_pair(rng: np.random.Generator) -> tuple[SpurPair, tuple[ScrewGear, ScrewGear]]:
     """A pair that runs, of ours and of the oracle's gears, some hundredths of a module beyond its tight distance."""
     while True:
@@ -161,24 +103,6 @@ def random_pair(rng: np.random.Generator) -> tuple[SpurPair, tuple[ScrewGear, Sc
             continue
         screws = [ScrewGear(z, module, ALPHA, beta, own, face, x, off) for z, x, face, off, own in each]
         return pair, (screws[0], screws[1])
-
-
-def least_lag(
-    pair: SpurPair, screws: tuple[ScrewGear, ScrewGear], places: Places, turns: tuple[float, float], flank: Flank
-) -> float:
-    """Arc [mm] on the driven base circle until the first pair of a side touches, by the search."""
-    origins = [np.array(shift, dtype=float) for shift in places.shifts]
-    origins[1] = origins[1] + pair.wheel_origin
-    driver, driven = (
-        Placed(screw, rotation, origin, centre)
-        for screw, rotation, origin, centre in zip(screws, places.rotations(), origins, places.off_axis(), strict=True)
-    )
-    first = round(-turns[0] * screws[0].teeth / (2 * math.pi))
-    found = []
-    for tooth in range(first - 4, first + 5):
-        mate = -tooth if flank == RIGHT else -tooth - 1
-        found.append(lag(driver, driven, turns, flank, (tooth, mate)))
-    return min(found)
 
 
 @pytest.mark.slow
@@ -218,19 +142,6 @@ def test_a_helix_that_vanishes_reads_what_the_spur_kernel_reads() -> None:
         assert ours.gap[0] == pytest.approx(theirs.gap[0], abs=1e-12)
         for name in ("driven_angle", "driven_turn", "driver_turn"):
             assert getattr(ours, name)[0] == pytest.approx(getattr(theirs, name)[0], abs=1e-12), name
-
-
-def mirrored(places: Places, pitch: float) -> Places:
-    """In the plane of the axes: y turns over, and so do turns about x and azimuths of centres.
-
-    The driven gear's space on the line of centres is then that on the other side of its tooth 0, a pitch [rad] on.
-    """
-    shifts = [(x, -y, z) for x, y, z in places.shifts]
-    (along, out), (other_along, other_out) = places.tilts
-    tilts = ((along, -out), (other_along, -other_out))
-    (first, at), (second, other) = places.centres
-    centres = ((first, -at), (second, -other - pitch))
-    return Places(shifts, tilts, centres)
 
 
 @pytest.mark.parametrize("seed", range(6))

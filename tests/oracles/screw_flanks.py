@@ -19,7 +19,10 @@ GRID, ROUNDS, SHRINK = 41, 14, 0.2  # points a side; a grid reaches 0.4 of the o
 
 @dataclass(frozen=True)
 class ScrewGear:
-    """A helical gear: normal module [mm], normal pressure angle and helix angle [rad], hand 1 or -1."""
+    """A helical gear: normal module [mm], normal pressure angle and helix angle [rad], hand 1 or -1.
+
+    Teeth of a ring point inwards: they grow wider with the radius, and a positive shift and addendum go inwards.
+    """
 
     teeth: int
     module: float
@@ -30,6 +33,12 @@ class ScrewGear:
     shift: float = 0.0
     thinner: float = 0.0
     addendum: float = 1.0
+    inside: bool = False
+
+    @property
+    def out(self) -> int:
+        """-1 of a ring."""
+        return -1 if self.inside else 1
 
     @property
     def reference(self) -> float:
@@ -49,7 +58,12 @@ class ScrewGear:
     @property
     def tip(self) -> float:
         """r_a [mm]."""
-        return self.reference + self.module * (self.addendum + self.shift)
+        return self.reference + self.out * self.module * (self.addendum + self.shift)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Radii between which its flanks are looked at: base and tip, of a ring tip and 2.2 modules further."""
+        return (self.tip, self.tip + 2.2 * self.module) if self.inside else (self.base * 1.0001, self.tip)
 
     @property
     def twist(self) -> float:
@@ -62,7 +76,7 @@ class ScrewGear:
         at_reference = normal / math.cos(self.beta) / (2 * self.reference)
         inv = [np.sqrt(np.maximum((own / self.base) ** 2 - 1, 0.0)) for own in (np.float64(self.reference), radius)]
         first, second = (own - np.arctan(own) for own in inv)
-        return np.asarray(at_reference + first - second)
+        return np.asarray(at_reference + self.out * (first - second))
 
     def points(self, radius: Array, z: Array, side: int, tooth: int, turn: float) -> Array:
         """Points (..., 3) [mm] of a flank; side 1 is the right one, on the low-azimuth side of its tooth."""
@@ -96,9 +110,10 @@ def lag(driver: Placed, driven: Placed, turns: tuple[float, float], side: int, t
     """Arc [mm] on the driven base circle by which a pair of flanks is apart, its least over both bounded flanks.
 
     A point of one flank is that arc off the other one of the same height; below 0 they overlap. Flanks of the driven
-    gear end at its tip and at both ends of its face.
+    gear end at its tip and at both ends of its face. Where one is a ring, its flank is the one of the other side.
     """
     gear, mate = driver.gear, driven.gear
+    mating = side * gear.out * mate.out
 
     def apart(radius: Array, z: Array) -> Array:
         points = driven.own(driver.world(gear.points(radius, z, side, teeth[0], turns[0]), turns[0]), turns[1])
@@ -106,11 +121,13 @@ def lag(driver: Placed, driven: Placed, turns: tuple[float, float], side: int, t
         azimuth = np.arctan2(points[..., 1], points[..., 0])
         middle = turns[1] + 2 * math.pi * teeth[1] / mate.teeth + mate.twist * points[..., 2]
         off = np.remainder(azimuth - middle + math.pi, 2 * math.pi) - math.pi
-        found = mate.base * (-side * off - mate.half_angle(rho))
-        outside = (rho > mate.tip) | (rho < mate.base) | (np.abs(points[..., 2]) > mate.face / 2)
+        found = mate.base * (-mating * off - mate.half_angle(rho))
+        first, last = (mate.tip, mate.ends[1]) if mate.inside else (mate.base, mate.tip)
+        outside = (rho > last) | (rho < first) | (np.abs(points[..., 2]) > mate.face / 2)
         return np.where(outside, np.inf, found)
 
-    return least(apart, (gear.base * 1.0001, -gear.face / 2), (gear.tip, gear.face / 2))
+    low, high = gear.ends
+    return least(apart, (low, -gear.face / 2), (high, gear.face / 2))
 
 
 def caliper(gear: ScrewGear, teeth: int, reach: float) -> float:
@@ -146,6 +163,14 @@ def ball_distance(gear: ScrewGear, centre: float) -> float:
     return pin_distance(gear, centre, None)
 
 
+def _rolls(gear: ScrewGear) -> tuple[float, float]:
+    """Rolls [rad] between which a flank is looked at for a ball: far beyond the tooth."""
+    if not gear.inside:
+        return 0.0, 2.0
+    first, last = (math.sqrt((radius / gear.base) ** 2 - 1.0) for radius in (gear.tip, gear.tip + 4 * gear.module))
+    return first, last
+
+
 def pin_distance(gear: ScrewGear, centre: float, lean: float | None) -> float:
     """The same to a straight line through that point, across the radius, that leans by an angle towards the helix."""
     space = math.pi / gear.teeth
@@ -158,7 +183,8 @@ def pin_distance(gear: ScrewGear, centre: float, lean: float | None) -> float:
         found = (apart**2).sum(axis=-1)
         return found if lean is None else found - (apart @ along) ** 2
 
-    return math.sqrt(least(square, (0.0, -3 * gear.module), (2.0, 3 * gear.module)))
+    first, last = _rolls(gear)
+    return math.sqrt(least(square, (first, -3 * gear.module), (last, 3 * gear.module)))
 
 
 def least(function: Callable[[Array, Array], Array], low: tuple[float, float], high: tuple[float, float]) -> float:

@@ -15,9 +15,29 @@ import numpy as np
 
 from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_gear import CylindricalGear
+from tol3d.gears.flank import RIGHT_HAND
 from tol3d.gears.involute import inverse_involute, involute
-from tol3d.gears.pair import CONTACT_MARGIN, Displaced, RollingPair
+from tol3d.gears.pair import CONTACT_MARGIN, SAME_LENGTH, Displaced, RollingPair
 from tol3d.numerics.arrays import Array
+
+
+def crossed_axes(pinion: CylindricalGear, wheel: CylindricalGear) -> str:
+    """Reason why two gears do not run together on parallel axes, by their helices; "" if they do.
+
+    External gears lean against each other, a gear inside a ring leans as the ring does.
+    """
+    first, second = pinion.helix_angle, wheel.helix_angle
+    if not math.isclose(first, second, rel_tol=SAME_LENGTH):
+        angles = " and ".join(f"{math.degrees(angle):g} deg" for angle in (first, second))
+        return f"gears on parallel axes need the same helix_angle, got {angles}: the axes would cross"
+    inside = pinion.iso_sign != wheel.iso_sign
+    if first and (pinion.hand == wheel.hand) != inside:
+        hands = " and ".join("right" if gear.hand == RIGHT_HAND else "left" for gear in (pinion, wheel))
+        need = "a helical gear and its ring need the same hand"
+        if not inside:
+            need = "external helical gears on parallel axes need opposite hands"
+        return f"{need}, got {hands}: the axes would cross"
+    return ""
 
 
 class Backlashes(NamedTuple):

@@ -8,7 +8,8 @@ Assembly of a gear into an internal one, along the line of centres or only along
 
 As it moves outwards from the middle of the ring no point of it may meet a tooth at its own height off the line of
 centres. Source of the condition: J. R. Colbourne, The Geometry of Involute Gears, Springer 1987, who looks at the tips
-of the teeth; here the whole outlines are checked, at several phases.
+of the teeth; here the whole outlines are checked, at several phases. Sections of helical gears are those of one pair at
+other phases: all of them have to pass at once.
 """
 
 import math
@@ -159,7 +160,13 @@ def radially_assembled(mesh: InternalMesh) -> bool:
     """True if the inner gear can be assembled along the line of centres, in the middle of its backlash."""
     if mesh.inner.tip_radius > mesh.ring.tip_radius:
         return False
-    return any(_passes(mesh, phase / PHASES / 2) for phase in range(PHASES + 1))
+    if not mesh.inner.helix_angle:
+        return any(_passes(mesh, phase / PHASES / 2) for phase in range(PHASES + 1))
+    half = [_passes(mesh, phase / PHASES / 2) for phase in range(PHASES + 1)]
+    around = half + half[-2:0:-1]  # the phases of a pitch, the second half mirrored
+    face = min(mesh.inner.face_width, mesh.ring.face_width)
+    taken = math.ceil(abs(mesh.inner.twist) * face / mesh.inner.angular_pitch * len(around))
+    return any(all((around * 2)[first : first + min(taken + 1, len(around))]) for first in range(len(around)))
 
 
 def _passes(mesh: InternalMesh, phase: float) -> bool:

@@ -1,4 +1,4 @@
-"""One internal involute spur gear, the ring: allowed sizes, root fillet, rim."""
+"""One internal involute spur or helical gear, the ring: allowed sizes, root fillet, rim."""
 
 import math
 from dataclasses import dataclass
@@ -16,14 +16,15 @@ BISECTIONS: Final = 200  # more than a double has bits
 
 @dataclass(frozen=True)
 class InternalGear(CylindricalGear):
-    """An internal spur gear by the words of ISO 21771-1; lengths in mm, angles in rad, teeth and diameters positive.
+    """An internal spur or helical gear by the words of ISO 21771-1; lengths in mm, angles in rad.
 
-    Its teeth point inwards: the tip circle is the smallest, the root circle the largest.
+    Its teeth point inwards: the tip circle is the smallest, the root circle the largest. Teeth and diameters are
+    positive.
 
     Args:
         teeth: number of teeth z, at least 3; ISO counts it negative.
-        module: m [mm].
-        pressure_angle: alpha at the reference circle [rad].
+        module: m [mm], of a helical gear the normal module m_n.
+        pressure_angle: alpha at the reference circle [rad], of a helical gear alpha_n in the normal section.
         face_width: b [mm].
         profile_shift: coefficient x, in modules; as in ISO 21771 positive goes towards the tip, that is inwards, and
             thickens the teeth. Books that write inv alpha_w with (x_2 - x_1)/(z_2 - z_1) have the other sign.
@@ -31,8 +32,10 @@ class InternalGear(CylindricalGear):
         root_fillet: radius [mm] of the arc between flank and root circle; None takes the 0.38 m
             of ISO 53, or the full round of the space where that is smaller.
         outer_diameter: of the rim [mm]; None takes the root circle and 2.5 m on either side.
-        tooth_thickness_deviation: added to the nominal arc at the reference circle [mm],
-            half on each flank; positive is thicker.
+        tooth_thickness_deviation: added to the nominal arc at the reference circle [mm], of a helical gear in the
+            normal section (E_sn), half on each flank; positive is thicker.
+        helix_angle: beta at the reference cylinder [rad]; 0 is a spur gear.
+        hand: of the helix, RIGHT_HAND or LEFT_HAND: that of its mate.
 
     Raises:
         GeometryError: the gear cannot be made; the text carries the numbers.
@@ -49,8 +52,7 @@ class InternalGear(CylindricalGear):
 
     def __post_init__(self) -> None:
         self._refuse_sizes({"pressure_angle": PRESSURE_ANGLES})
-        if self.helix_angle != 0.0:
-            raise GeometryError("helix_angle: internal helical gears are not supported, only external ones are")
+        self._refuse_helix()
         self._refuse_circles()
         self._refuse_teeth()
         if not self.rim_diameter > self.root_diameter:

@@ -1,4 +1,4 @@
-"""An external spur gear in an internal one, on parallel axes; either may drive.
+"""An external spur or helical gear in an internal one, on parallel axes; either may drive.
 
 World: the driver's axis is z. The teeth meet at azimuth 0 of both gears, and both turn in the same sense. The axis of a
 driven ring lies at -x by the centre distance, that of a driven gear in a driving ring at +x.
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
-from tol3d.gears.cylindrical_pair import CylindricalPair
+from tol3d.gears.cylindrical_pair import CylindricalPair, crossed_axes
 from tol3d.gears.flank import Flank, opposite
 from tol3d.gears.internal_assembly import interference, interferes, radially_assembled
 from tol3d.gears.internal_gear import InternalGear
@@ -28,8 +28,8 @@ class InternalPair(CylindricalPair):
     As the centre distance grows the teeth come closer: backlash shrinks.
 
     Raises:
-        GeometryError: not exactly one gear is internal; modules or pressure angles differ; the internal gear has not
-            more teeth; or at that distance the base circles have no common tangent.
+        GeometryError: not exactly one gear is internal; modules, pressure angles, helix angles or hands differ; the
+            internal gear has not more teeth; or at that distance the base circles have no common tangent.
 
     >>> alpha = math.radians(20)
     >>> planet, ring = SpurGear(27, 1.0, alpha, 10.0), InternalGear(79, 1.0, alpha, 10.0)
@@ -46,10 +46,8 @@ class InternalPair(CylindricalPair):
             count = "two" if isinstance(self.wheel, InternalGear) else "none"
             raise GeometryError(f"an internal pair needs one internal gear and one external, got {count} of the first")
         self._refuse_unlike()
-        if self.inner.helix_angle:
-            raise GeometryError(
-                "a helical gear meshes with external gears only: internal helical gears are not supported"
-            )
+        if crossed := crossed_axes(self.pinion, self.wheel):
+            raise GeometryError(crossed)
         if self.ring.teeth <= self.inner.teeth:
             raise GeometryError(
                 f"the internal gear needs more teeth than the gear inside it: got {self.ring.teeth} and "
@@ -136,7 +134,7 @@ class InternalPair(CylindricalPair):
 
     @property
     def radially_assembled(self) -> bool:
-        """True if the inner gear can be inserted along the line of centres; else only along its axis."""
+        """True if the inner gear can be inserted along the line of centres; else only along its axis, or its helix."""
         return radially_assembled(InternalMesh(self.ring, self.inner, self.centre_distance))
 
     def refuse_interference(self) -> None:
@@ -159,14 +157,17 @@ class InternalPair(CylindricalPair):
         If an axis is displaced by d, the path ends d/sin(alpha_w) off, as for external gears, and the line of centres
         and the working pressure angle turn by d/(a sin(alpha_w)), which is large if the numbers of teeth are close.
         """
-        lowest, highest = self.active_azimuths
+        lowest, highest = self._azimuths_over(self.pinion.face_width)
         margin = CONTACT_MARGIN * (self.pinion.angular_pitch + self.pinion.base_pitch / self.centre_distance)
         return lowest - margin, highest + margin
 
     # positions --------------------------------------------------------------------------------------
 
     def driven_angle(self, driver_angle: Array) -> Array:
-        """Wheel's turn [rad] with a space centred on the pinion's tooth: pi/z2 + (z1/z2) theta_1."""
+        """Wheel's turn [rad] with a space centred on the pinion's tooth: pi/z2 + (z1/z2) theta_1.
+
+        Of helical gears while both face centres lie in one plane.
+        """
         return math.pi / self.wheel.teeth + driver_angle / self.ratio
 
     def touching_angle(self, driver_angle: Array, flank: Flank, displaced: Displaced) -> Array:
@@ -188,8 +189,9 @@ class InternalPair(CylindricalPair):
         along = self._along(working, displaced)
         turned = self.pinion.base_radius * (driver_angle - direction) - flank * along
         mate = 1 if flank == 1 else 0
+        screwed = self.wheel.twist * away[:, 2] if self.wheel.helix_angle else 0.0
         return np.asarray(
-            direction + mate * self.wheel.angular_pitch + turned / self.wheel.base_radius, dtype=np.float64
+            direction + mate * self.wheel.angular_pitch + turned / self.wheel.base_radius + screwed, dtype=np.float64
         )
 
     def mating_flank(self, flank: Flank) -> Flank:

@@ -10,25 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
-from tol3d.gears.cylindrical_pair import CylindricalPair
-from tol3d.gears.flank import RIGHT_HAND, Flank
-from tol3d.gears.pair import SAME_LENGTH, Displaced
+from tol3d.gears.cylindrical_pair import CylindricalPair, crossed_axes
+from tol3d.gears.flank import Flank
+from tol3d.gears.pair import Displaced
 from tol3d.gears.spur_gear import SpurGear
 from tol3d.numerics.arrays import Array
-
-
-def crossed_axes(pinion: SpurGear, wheel: SpurGear) -> str:
-    """Reason why two external gears do not run together on parallel axes, by their helices; "" if they do."""
-    first, second = pinion.helix_angle, wheel.helix_angle
-    if not math.isclose(first, second, rel_tol=SAME_LENGTH):
-        angles = " and ".join(f"{math.degrees(angle):g} deg" for angle in (first, second))
-        return f"gears on parallel axes need the same helix_angle, got {angles}: the axes would cross"
-    if first and pinion.hand == wheel.hand:
-        hand = "right" if pinion.hand == RIGHT_HAND else "left"
-        return (
-            f"external helical gears on parallel axes need opposite hands, got {hand} and {hand}: the axes would cross"
-        )
-    return ""
 
 
 @dataclass(frozen=True)

@@ -2,13 +2,16 @@
 
 Closed forms of ISO 21771-1 for spur and helical gears. Sizes of an internal gear are those of its spaces, which have
 the shape of the teeth of an external one. All forms and their inverses are exact for rigid involutes. Lengths in mm.
+
+An internal helical gear is measured between balls alone: its flanks are hollow, so that the anvils of a span would
+touch them side by side along the axis, and a straight pin that touches both flanks of a space cuts them further on.
 """
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -27,7 +30,7 @@ class Span:
     """The span W_k: distance of two parallel faces over k teeth, of an internal gear over k spaces.
 
     W_k = m_n cos alpha_n (pi (k - 1/2) + z inv alpha_t + 2 x tan alpha_n) (ISO 21771-1); internal: - 2 x tan alpha.
-    The faces touch W_k sin beta_b apart along the axis.
+    The faces touch W_k sin beta_b apart along the axis. Internal helical gears have none.
 
     Args:
         teeth: k; the number of spaces of an internal gear.
@@ -61,8 +64,10 @@ class Span:
         """Refuse a span whose faces touch no involute, or whose contacts lie further apart than the face is wide.
 
         Raises:
-            GeometryError: with the possible numbers of teeth.
+            GeometryError: with the possible numbers of teeth, or balls of an internal helical gear.
         """
+        if _has_balls_alone(gear):
+            raise GeometryError(f"{NO_SPAN}{_proposed_balls(gear)}")
         if 1 <= self.teeth <= gear.teeth and _on_flank(gear, self.touches_at(gear)):
             if (least := self.least_face_width(gear)) > gear.face_width:
                 raise GeometryError(
@@ -141,6 +146,8 @@ class OverPins:
         Raises:
             GeometryError: with the remedy.
         """
+        if _has_balls_alone(gear) and not isinstance(self, OverBalls):
+            raise GeometryError(f"{NO_PINS}{_proposed_balls(gear)}")
         pins = pins_of(gear, type(self))
         advice = f"; {pins.diameter:g} mm does" if pins else ""
         try:
@@ -192,6 +199,19 @@ class OverBalls(OverPins):
 
 ToothMeasure = Span | OverPins
 
+NO_SPAN: Final = "an internal helical gear has no span, its flanks are hollow: measure between balls"
+NO_PINS: Final = "straight pins cut the flanks of an internal helical gear: measure between balls"
+
+
+def _has_balls_alone(gear: CylindricalGear) -> bool:
+    """True of internal helical gears."""
+    return gear.iso_sign < 0 and gear.helix_angle > 0.0
+
+
+def _proposed_balls(gear: CylindricalGear) -> str:
+    balls = pins_of(gear, OverBalls)
+    return f", such as {{balls: {balls.diameter:g} mm}}" if balls else ""
+
 
 @dataclass(frozen=True)
 class PinScale:
@@ -240,6 +260,8 @@ class PinScale:
 
 def spans_of(gear: CylindricalGear) -> list[Span]:
     """Every span whose faces touch the involute, and both sides of it within the face."""
+    if _has_balls_alone(gear):
+        return []
     spans = (Span(teeth) for teeth in range(1, gear.teeth // 2 + 1))
     touching = (span for span in spans if span.size(gear) > 0.0 and _on_flank(gear, span.touches_at(gear)))
     return [span for span in touching if span.least_face_width(gear) <= gear.face_width]
@@ -251,8 +273,11 @@ def span_of(gear: CylindricalGear) -> Span | None:
 
 
 def pins_of(gear: CylindricalGear, kind: type[OverPins] = OverPins) -> OverPins | None:
-    """Pins or balls, in steps of PIN_STEP, that touch near the circle of radius r + x m; None if none do."""
-    return next(_possible_pins(gear, kind), None)
+    """Pins or balls, in steps of PIN_STEP, that touch near the circle of radius r + x m; None if none do.
+
+    Balls of an internal helical gear.
+    """
+    return next(_possible_pins(gear, OverBalls if _has_balls_alone(gear) else kind), None)
 
 
 def _possible_pins(gear: CylindricalGear, kind: type[OverPins]) -> Iterator[OverPins]:
@@ -276,14 +301,17 @@ def _screw_pin(gear: CylindricalGear, roll: float, angle: float) -> float:
     """Diameter D [mm] of a pin that touches screw flanks at a roll t [rad].
 
     tan alpha_K = t + D cos beta_b/(2 r_b) and inv alpha_K = D/(2 r_b cos beta_b) + t - angle meet where the first less
-    alpha_K is the second: by bisection over alpha_K, which is below the spur gear's `angle`.
+    alpha_K is the second: by bisection over alpha_K, which is below the spur gear's `angle`. Inside, where D counts
+    negative, it is above that and below arctan t, at which D = 0.
     """
     cosine, low, high = gear.base_helix_cosine, 0.0, angle
+    if gear.iso_sign < 0:
+        low, high = angle, math.atan(roll)
     for _ in range(BISECTIONS):
         middle = (low + high) / 2
         turn = (math.tan(middle) - roll) / cosine**2  # D/(2 r_b cos beta_b)
         low, high = (middle, high) if involute(middle) > turn + roll - angle else (low, middle)
-    return 2 * gear.base_radius * (math.tan(low) - roll) / cosine
+    return gear.iso_sign * 2 * gear.base_radius * (math.tan(low) - roll) / cosine
 
 
 def _is_possible(gear: CylindricalGear, pins: OverPins) -> bool:

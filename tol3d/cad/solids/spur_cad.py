@@ -1,7 +1,8 @@
 """Data read off the solid of a cylindrical gear, external or internal: flanks swept along z, one end with its rims.
 
 The flanks of a helical gear are ruled by the tangents of its base helix, on which w = t + sigma kappa z is constant, t
-the roll. Its strips lie between such generators, each as long as the flank is there: the normal is constant along it.
+the roll; of an internal one it is t - sigma kappa z. Its strips lie between such generators, each as long as the flank
+is there: the normal is constant along it.
 """
 
 from collections.abc import Sequence
@@ -50,7 +51,7 @@ def sample_flanks(gear: SpurGear | InternalGear, steps: int) -> Arrays:
 
 
 def _sample_screws(gear: SpurGear | InternalGear, part: NamedSolid, steps: int) -> Arrays:
-    """The same of a helical gear; the parameter is w on its right flank with the twist counted positive."""
+    """The same of a helical gear; the parameter is w, which is of one range on both flanks."""
     first, last = roll_span(gear)
     leaning = abs(gear.twist) * gear.face_width / 2
     w = _evenly_bent(first, last, leaning, steps)
@@ -60,7 +61,7 @@ def _sample_screws(gear: SpurGear | InternalGear, part: NamedSolid, steps: int) 
     found: dict[str, list[Array]] = {"inner": [], "outer": [], "normals": []}
     flank_error = 0.0
     for flank in (RIGHT, LEFT):
-        face, fall = RuledFace(part.faces[flank_name(0, flank)]), flank * gear.twist
+        face, fall = RuledFace(part.faces[flank_name(0, flank)]), gear.iso_sign * flank * gear.twist
         rolls = np.clip([w + fall * gear.face_width / 2, w - fall * gear.face_width / 2], first, last)
         for name, roll in zip(("inner", "outer"), rolls, strict=True):
             place = face.places(roll, (w - roll) / fall)
@@ -113,7 +114,8 @@ def _at_height(plane: Array, z: float) -> Array:
 
 def tessellate(gear: SpurGear | InternalGear, deflection: float) -> Arrays:
     """See tol3d.cad.solids.swept_cad.swept_mesh; vertices know the side of their tooth."""
-    straight = internal_gear.build(gear) if isinstance(gear, InternalGear) else spur_gear.build_straight(gear)
+    kind = internal_gear if isinstance(gear, InternalGear) else spur_gear
+    straight = kind.build_straight(gear)  # type: ignore[arg-type]  # each module has its own gears
     mesh = swept_mesh(straight, gear.face_width, deflection, gear.twist)
     return mesh.arrays(np.tile(_sides(mesh.rims, mesh.count), mesh.layers))
 

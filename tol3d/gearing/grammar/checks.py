@@ -11,6 +11,7 @@ from tol3d.gearing.grammar.parts import (
     BoredGearSpec,
     GearSpec,
     HelicalGearSpec,
+    InternalGearSpec,
     ShaftReference,
     ShaftSpec,
     carried,
@@ -66,16 +67,24 @@ def forms_of_two_shapes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
             yield ("tolerances", str(name), "shape"), f"expected the shape of {other!r}, the form of {spec.of!r} too"
 
 
+def helical_gears(scene: Scene) -> Mapping[str, HelicalGearSpec | InternalGearSpec]:
+    """Helical gears of a scene, rings among them."""
+    rings = {name: ring for name, ring in scene.of(InternalGearSpec).items() if ring.helix_angle.number}
+    return {**scene.of(HelicalGearSpec), **rings}
+
+
 def helices_elsewhere(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Helical gears that moves other than meshes name: what these compute of them was never derived."""
-    helical = scene.of(HelicalGearSpec)
+    helical = helical_gears(scene)
     for name, move in scene.moves.items():
         if isinstance(move, MeshSpec):
             continue
         own = [reference.name for reference in move.references() if not isinstance(reference, ShaftReference)]
         for gear in (gear for gear in helical if gear in own):
-            words = f"expected a spur_gear, for {name!r} is {move.words}"
-            yield ("parts", gear, "kind"), f"{words}: helical gears are simulated in meshes and trains alone"
+            ring = helical[gear] if isinstance(helical[gear], InternalGearSpec) else None
+            field, expected = ("helix_angle", f"0 deg, got {ring.helix_angle}") if ring else ("kind", "a spur_gear")
+            words = f"expected {expected}, for {name!r} is {move.words}"
+            yield ("parts", gear, field), f"{words}: helical gears are simulated in meshes and trains alone"
 
 
 def second_axial_plays(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
@@ -100,7 +109,7 @@ def second_axial_plays(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 def readings_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Measures of helical meshes that are read in a section or of one tooth: their contact lines cross the face."""
-    helical = scene.of(HelicalGearSpec)
+    helical = helical_gears(scene)
     for name, measure in scene.measures.items():
         if not isinstance(measure, FlankMeasureSpec) or not helical:
             continue
@@ -119,9 +128,7 @@ def forces_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         bearing = scene.parts[spec.of]
         if spec.direction != "tooth_force" or not isinstance(bearing, BearingSpec):
             continue
-        gear = next(
-            (g for g in gears_on(bearing.shaft, scene.parts) if isinstance(scene.parts[g], HelicalGearSpec)), None
-        )
+        gear = next((g for g in gears_on(bearing.shaft, scene.parts) if g in helical_gears(scene)), None)
         if gear is not None:
             words = "expected apart, random or {at: …}, got tooth_force: the thrust of the helical gear "
             yield ("tolerances", str(name), "direction"), f"{words}{gear!r} turns the force at each bearing its own way"
@@ -129,7 +136,7 @@ def forces_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 def steep_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Helix angles that nobody cuts for parallel axes."""
-    for name, gear in scene.of(HelicalGearSpec).items():
+    for name, gear in helical_gears(scene).items():
         if gear.helix_angle.internal > STEEPEST_USUAL + ROUNDING:
             words = f"expected a helix_angle of at most 45 deg, got {gear.helix_angle}"
             yield ("parts", name, "helix_angle"), f"{words}; check the unit"

@@ -1,6 +1,6 @@
 """Cylindrical gears of the parts of a scene, without what other entries make of them."""
 
-from tol3d.gearing.grammar.parts import HelicalGearSpec, InternalGearSpec, SpurGearSpec
+from tol3d.gearing.grammar.parts import HelicalGearSpec, InternalGearSpec, SpurGearSpec, helix_of
 from tol3d.gears import LEFT_HAND, RIGHT_HAND, InternalGear, SpurGear
 
 CylindricalSpec = SpurGearSpec | HelicalGearSpec | InternalGearSpec
@@ -16,7 +16,7 @@ def cylindrical_gear_of(spec: CylindricalSpec) -> SpurGear | InternalGear:
 
 
 def _spur_gear(spec: SpurGearSpec | HelicalGearSpec) -> SpurGear:
-    helix = (spec.helix_angle.internal, spec.hand) if isinstance(spec, HelicalGearSpec) else (0.0, "right")
+    angle, hand = helix_of(spec)
     return SpurGear(
         teeth=spec.teeth,
         module=spec.module.internal,
@@ -27,12 +27,13 @@ def _spur_gear(spec: SpurGearSpec | HelicalGearSpec) -> SpurGear:
         dedendum=spec.dedendum,
         root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
         bore=0.0 if spec.bore is None else spec.bore.internal,
-        helix_angle=helix[0],
-        hand=LEFT_HAND if helix[1] == "left" else RIGHT_HAND,
+        helix_angle=angle,
+        hand=LEFT_HAND if hand == "left" else RIGHT_HAND,
     )
 
 
 def _internal_gear(spec: InternalGearSpec) -> InternalGear:
+    angle, hand = helix_of(spec)
     return InternalGear(
         teeth=spec.teeth,
         module=spec.module.internal,
@@ -43,4 +44,6 @@ def _internal_gear(spec: InternalGearSpec) -> InternalGear:
         dedendum=spec.dedendum,
         root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
         outer_diameter=None if spec.outer_diameter is None else spec.outer_diameter.internal,
+        helix_angle=angle,
+        hand=LEFT_HAND if hand == "left" else RIGHT_HAND,
     )

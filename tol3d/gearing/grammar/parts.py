@@ -82,18 +82,20 @@ def _not_negative(angle: Quantity) -> Quantity:
     return angle
 
 
+HelixAngle = Annotated[Quantity, Of("angle"), AfterValidator(_not_negative)]
+
+
 class HelicalGearSpec(ExternalGearSpec):
     """A helical gear on a parallel axis: module, pressure angle and tooth thickness are those of the normal section.
 
-    Profile shift, addendum and dedendum count in normal modules. Its mate has the same helix angle and the other hand.
+    Profile shift, addendum and dedendum count in normal modules. Its mate has the same helix angle and the other hand,
+    a ring around it the same hand.
     """
 
     words: ClassVar[str] = "a helical gear"
 
     kind: Literal["helical_gear"]
-    helix_angle: Annotated[Quantity, Of("angle"), AfterValidator(_not_negative)] = Field(
-        description="helix angle beta at the reference cylinder; 0 deg is a spur gear"
-    )
+    helix_angle: HelixAngle = Field(description="helix angle beta at the reference cylinder; 0 deg is a spur gear")
     hand: Literal["right", "left"] = Field(
         description="of the helix: seen from outside, the axis upright, right-hand teeth lean to the right"
     )
@@ -102,18 +104,40 @@ class HelicalGearSpec(ExternalGearSpec):
 class InternalGearSpec(GearSpec, GrowingSpec):
     """A ring with teeth on its inside; a tooth points inwards, its thickness is an arc at the reference circle.
 
-    As for every gear a positive profile shift is a thicker tooth, here with its tip further in (ISO 21771).
+    As for every gear a positive profile shift is a thicker tooth, here with its tip further in (ISO 21771). With a
+    helix angle and a hand it is a helical gear; the gears in it have the same.
     """
 
     words: ClassVar[str] = "an internal gear"
 
     kind: Literal["internal_gear"]
+    helix_angle: HelixAngle = Field(
+        default=Quantity(0.0, "deg"),
+        description="helix angle beta at the reference cylinder; default: 0 deg, a spur gear",
+        json_schema_extra={"default": "0 deg"},
+    )
+    hand: Literal["right", "left"] | None = Field(
+        default=None, description="of the helix, as of a helical gear; given with a helix_angle"
+    )
     root_fillet: Length | None = Field(
         default=None, description="radius between flank and root circle; default: 0.38 m (ISO 53) or the full round"
     )
     outer_diameter: Length | None = Field(
         default=None, description="of the ring; default: that of the root circle and 5 modules"
     )
+
+    @model_validator(mode="after")
+    def _refuse_no_hand(self) -> Self:
+        if self.helix_angle.number and self.hand is None:
+            raise refused("hand", f"right or left beside a helix_angle of {self.helix_angle}", "none")
+        return self
+
+
+def helix_of(spec: PartSpec) -> tuple[float, str]:
+    """Helix angle [rad] and hand of a gear; 0 of all but helical ones."""
+    if isinstance(spec, HelicalGearSpec | InternalGearSpec):
+        return spec.helix_angle.internal, spec.hand or "right"
+    return 0.0, "right"
 
 
 class BevelGearSpec(BoredGearSpec):

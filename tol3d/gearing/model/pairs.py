@@ -19,7 +19,8 @@ from tol3d.gears import (
     SpurPair,
     pitch_angles,
 )
-from tol3d.gears.spur_pair import crossed_axes
+from tol3d.gears.cylindrical_gear import CylindricalGear
+from tol3d.gears.cylindrical_pair import CylindricalPair, crossed_axes
 from tol3d.scene import Scene
 from tol3d.units import Quantity
 
@@ -63,7 +64,7 @@ def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
     if move.centre_distance is None:
         words = "expected the centre_distance of the axes, got none; it follows only where both shafts lie in bores"
         raise scene.refuse(("moves", name), words)
-    if isinstance(pinion, SpurGear) and isinstance(wheel, SpurGear) and (crossed := crossed_axes(pinion, wheel)):
+    if crossed := crossed_axes(pinion, wheel):
         raise scene.refuse(("moves", name, "driven"), crossed)
     try:
         pair = cylindrical_pair(pinion, wheel, move.centre_distance.internal)
@@ -120,12 +121,24 @@ SHARP_TIP: Final = 0.2  # normal modules; hardened teeth chip where their tips a
 
 
 @undercut_warning.register
+def _(gear: InternalGear) -> str:
+    """Warning of sharp tips of a helical ring."""
+    return _sharp_tips(gear)
+
+
+def _sharp_tips(gear: CylindricalGear) -> str:
+    if not gear.helix_angle or gear.normal_tip_thickness >= SHARP_TIP * gear.module:
+        return ""
+    return (
+        f"sharp tips: the teeth are {gear.normal_tip_thickness:.4f} mm thick at the tip in the normal section, "
+        f"below {SHARP_TIP:g} normal modules; lower addendum or profile_shift"
+    )
+
+
+@undercut_warning.register
 def _(gear: SpurGear) -> str:
-    if gear.helix_angle and gear.normal_tip_thickness < SHARP_TIP * gear.module:
-        return (
-            f"sharp tips: the teeth are {gear.normal_tip_thickness:.4f} mm thick at the tip in the normal section, "
-            f"below {SHARP_TIP:g} normal modules; lower addendum or profile_shift"
-        )
+    if sharp := _sharp_tips(gear):
+        return sharp
     if gear.undercut_radius > gear.base_radius:
         return (
             f"undercut by a rack of addendum 1, because profile_shift is below {gear.undercut_limit_shift:.4f}; "
@@ -197,6 +210,10 @@ def _(gear: BevelGear) -> str:
 
 @assembly_warning.register
 def _(pair: SpurPair) -> str:
+    return _overlap_alone(pair)
+
+
+def _overlap_alone(pair: CylindricalPair) -> str:
     """Warning of teeth that keep contact only because they lean, by the helix of the pair."""
     if pair.contact_ratio >= 1.0:
         return ""
@@ -208,9 +225,10 @@ def _(pair: SpurPair) -> str:
 
 @assembly_warning.register
 def _(pair: InternalPair) -> str:
-    if pair.radially_assembled:
-        return ""
+    if (alone := _overlap_alone(pair)) or pair.radially_assembled:
+        return alone
+    along = "on a screw along its axis" if pair.inner.helix_angle else "along its axis"
     return (
-        f"the gear of {pair.inner.teeth} teeth goes into the ring of {pair.ring.teeth} along its axis only: moved "
+        f"the gear of {pair.inner.teeth} teeth goes into the ring of {pair.ring.teeth} {along} only: moved "
         "along the line of centres its teeth meet the ring's"
     )

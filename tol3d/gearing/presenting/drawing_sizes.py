@@ -94,7 +94,7 @@ def _rows(name: str, gear: Gear, stated: Sequence[Thickness]) -> Iterator[tuple[
     limits = [own.limits for own in stated]
     deviations = (0.0, sum(low for low, _ in limits), sum(high for _, high in limits))
     words = "arc s" if isinstance(gear, SpurGear | InternalGear) else "arc, mean section"
-    if isinstance(gear, SpurGear) and gear.helix_angle:
+    if isinstance(gear, SpurGear | InternalGear) and gear.helix_angle:
         words = "arc s_n, normal section"
     yield _row(name, words, [gear.section_thickness + deviation for deviation in deviations])
     if isinstance(gear, SpurGear | InternalGear):

@@ -181,8 +181,8 @@ class SpurColumn(CylindricalColumn):
     bore = Computed(Shows("bore [mm]", "g"), lambda own: own.of.bore or None)
 
 
-class HelicalColumn(SpurColumn):
-    """An external gear with screw teeth."""
+class ScrewColumn(CylindricalColumn):
+    """A gear with screw teeth, or what it shares with a ring."""
 
     module = Computed(Shows("normal module m_n [mm]", "g"), lambda own: own.of.module)
     pressure_angle = Computed(Shows("normal pressure angle α_n [°]", "degrees"), lambda own: own.of.pressure_angle)
@@ -199,11 +199,19 @@ class HelicalColumn(SpurColumn):
     )
 
 
+class HelicalColumn(ScrewColumn, SpurColumn):
+    """An external gear with screw teeth."""
+
+
 class RingColumn(CylindricalColumn):
     """A gear with internal teeth."""
 
     teeth = Computed(Shows("teeth z", "d"), lambda own: f"{own.of.teeth}, inside")
     outer_diameter = Computed(Shows("outer diameter [mm]", ".4f"), lambda own: own.of.rim_diameter)
+
+
+class HelicalRingColumn(ScrewColumn, RingColumn):
+    """A gear with internal screw teeth."""
 
 
 class BevelColumn(GearColumn):
@@ -275,7 +283,7 @@ class HelicalMeshColumn(ParallelColumn):
     axial_pitch = Computed(Shows("axial pitch p_x [mm]"), lambda own: _axial_pitch(own.of.pair))
 
 
-def _axial_pitch(pair: SpurPair) -> str:
+def _axial_pitch(pair: SpurPair | InternalPair) -> str:
     """The axial pitch, and that the common face is narrower where it is."""
     pitch = math.pi * pair.pinion.module / math.sin(pair.pinion.helix_angle)
     return f"{pitch:.4f}" + (", wider than the common face" if pair.overlap_ratio < 1.0 else "")
@@ -306,14 +314,15 @@ MESH_COLUMNS: Final[Mapping[type[Any], type[MeshColumn]]] = {
 
 def gear_column(gear: Gear) -> GearColumn:
     """Rows of a gear."""
-    is_helical = isinstance(gear, SpurGear) and gear.helix_angle > 0.0
-    return (HelicalColumn if is_helical else GEAR_COLUMNS[type(gear)])(gear)
+    if isinstance(gear, SpurGear | InternalGear) and gear.helix_angle > 0.0:
+        return (HelicalColumn if isinstance(gear, SpurGear) else HelicalRingColumn)(gear)
+    return GEAR_COLUMNS[type(gear)](gear)
 
 
 def mesh_column(mesh: Mesh) -> MeshColumn:
     """Rows of a mesh."""
     pair = mesh.pair
-    is_helical = isinstance(pair, SpurPair) and pair.pinion.helix_angle > 0.0
+    is_helical = isinstance(pair, SpurPair | InternalPair) and pair.pinion.helix_angle > 0.0
     return (HelicalMeshColumn if is_helical else MESH_COLUMNS[type(pair)])(mesh)
 
 

@@ -3,11 +3,12 @@
 In the plane of action of the driver's flank side sigma, u counts along the line of action from the pitch point on, z
 along the axis. Pair k touches along the line
 
-    u = r_b1 (alpha_wt + eta_b1 - sigma (theta1 + 2 pi k/z1) - tan alpha_wt) - sigma h1 tan(beta_b) z,
+    u = r_b1 (eta_b1 - sigma (theta1 + 2 pi k/z1) - s1 inv alpha_wt) - sigma h1 tan(beta_b) z,
 
-as far as it lies between the tips, u1 to u2, and on the common face. A lean f of the axes against each other in that
-plane opens it by f l, l = z cos(beta_b) - sigma h1 u sin(beta_b) the coordinate along the line: to first order a pair
-touches first at an end of its line, on an end of the face or on a tip edge, and the pair whose end is lowest carries.
+s1 = 1, of a driving ring -1, as far as it lies between the tips, u1 to u2, and on the common face. A lean f of the axes
+against each other in that plane opens it by f l, l = z cos(beta_b) - sigma h1 u sin(beta_b) the coordinate along the
+line: to first order a pair touches first at an end of its line, on an end of the face or on a tip edge, and the pair
+whose end is lowest carries.
 """
 
 import math
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.gears import SpurPair
+from tol3d.gears import InternalPair, SpurPair
 from tol3d.numerics.arrays import Array
 
 
@@ -23,14 +24,17 @@ from tol3d.numerics.arrays import Array
 class ContactLines:
     """The contact lines of a helical pair at its nominal places."""
 
-    pair: SpurPair
+    pair: SpurPair | InternalPair
 
     @property
     def path(self) -> tuple[float, float]:
         """u1 and u2 [mm], where the tips of wheel and pinion end the path of contact."""
         at_pitch = math.tan(self.pair.working_pressure_angle)
-        pinion, wheel = self.pair.pinion, self.pair.wheel
-        return -wheel.base_radius * (wheel.tip_roll - at_pitch), pinion.base_radius * (pinion.tip_roll - at_pitch)
+        first, last = (
+            gear.iso_sign * gear.base_radius * (gear.tip_roll - at_pitch)
+            for gear in (self.pair.wheel, self.pair.pinion)
+        )
+        return -first, last
 
     @property
     def furthest(self) -> float:
@@ -52,7 +56,9 @@ class ContactLines:
         fall = sine / cosine
         first, last = self.path
         pitch, working = pinion.transverse_base_pitch, self.pair.working_pressure_angle
-        tooth = pinion.base_radius * (working + pinion.base_half_angle - side * driver_angle - math.tan(working))
+        sense = pinion.iso_sign
+        at_pitch = sense * working + pinion.base_half_angle
+        tooth = pinion.base_radius * (at_pitch - side * driver_angle - sense * math.tan(working))
         furthest_down = first - abs(fall) * half
         below = furthest_down + np.mod(tooth - furthest_down, pitch)
         lowest, highest = np.full(len(driver_angle), np.inf), np.full(len(driver_angle), -np.inf)

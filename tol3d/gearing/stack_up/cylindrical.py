@@ -59,20 +59,24 @@ POSITIONS_OF_A_PITCH: Final = 64
 
 
 class HelicalStack(SpurStack):
-    """The stack-up of two helical gears: what happens in the transverse section, times cos(beta_b), and contact lines.
+    """The stack-up of two helical gears, of which one may be internal: contact lines, and transverse sections.
 
-    Every slice across the axes is a spur pair, so that shifts, thickness and growth act as there. Where axes lean the
-    gap is least at an end of a contact line, which depends on the position; see contact_lines.py. Of second order, and
-    so neglected: lines end where their mates do, which stand the backlash j apart (f j/tan(beta_b) of a lean f).
+    Every slice across the axes is a spur pair, so that shifts, thickness and growth act as there, times cos(beta_b).
+    Where axes lean the gap is least at an end of a contact line, which depends on the position; see contact_lines.py.
+    Of second order, and so neglected: lines end where their mates do, which stand the backlash j apart (f j/tan(beta_b)
+    of a lean f).
 
     Args:
         at: turns of the driver [rad] at which a loss is averaged that is asked for without any; None: over a pitch.
     """
 
-    pair: SpurPair
-
     def __init__(
-        self, model: Model, mesh: Mesh, pair: SpurPair, reading: Reading, at: Sequence[float] | None = None
+        self,
+        model: Model,
+        mesh: Mesh,
+        pair: SpurPair | InternalPair,
+        reading: Reading,
+        at: Sequence[float] | None = None,
     ) -> None:
         super().__init__(model, mesh, pair, reading)
         self._lines = ContactLines(pair)
@@ -99,7 +103,7 @@ class HelicalStack(SpurStack):
 
     def _aside_by_tilts(self, in_plane: Array, across: Array, driver_angle: Array) -> Array:
         right, left = self._of_sides(in_plane, across, driver_angle)
-        return np.asarray((right - left) / 2)
+        return np.asarray(self.sense * (right - left) / 2)
 
     @property
     def turns_by_teeth(self) -> bool:
@@ -109,7 +113,7 @@ class HelicalStack(SpurStack):
     def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
         """As of single flanks: the pair of leaning axes that touches first, (trials, positions) [mm at the arm]."""
         in_plane, across = self._lost_by_tilts(deviations)
-        return side * lost((in_plane + side * across)[:, None] / 2, self._lines.ends(side, driver_angle))
+        return self.sense * side * lost((in_plane + side * across)[:, None] / 2, self._lines.ends(side, driver_angle))
 
     @property
     def _longest_path(self) -> float:

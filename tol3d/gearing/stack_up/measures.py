@@ -114,7 +114,7 @@ class BevelStack(Stack[BevelPair]):
 def stack_of(model: Model, mesh: Mesh, reading: Reading, at: Sequence[float] | None = None) -> Stack[GearPair]:
     """The stack-up of a mesh for one of its readings, at the driver's turns [rad] (positions,) or at any."""
     pair = mesh.pair
-    if isinstance(pair, SpurPair) and pair.pinion.helix_angle:
+    if isinstance(pair, SpurPair | InternalPair) and pair.pinion.helix_angle:
         return HelicalStack(model, mesh, pair, reading, at)
     if isinstance(pair, SpurPair | InternalPair):
         return SpurStack(model, mesh, pair, reading)

@@ -214,8 +214,9 @@ def _leaning(effect: AxisTilt, mesh: NominalMesh[SpurPair | InternalPair], contr
     opening = Term(contributor, largest, tilts=(tuple(in_plane.tolist()), tuple(across.tolist())))
     if not mesh.pair.pinion.helix_angle:
         return Contribution(opening)
+    towards = math.cos(mesh.pair.mesh_azimuths[0 if role == "driver" else 1])  # the mesh, from the gear's axis
     radius = mesh.pair.working_radii[0 if role == "driver" else 1]
-    screwed = mesh.screwed("driven") * radius  # the driver's teeth are on the other side of its axis
+    screwed = -mesh.screwed(role) * towards * radius  # its teeth there move along the axis against the turn about y
     return Contribution(opening, aside=_turned(contributor, (x, y), per_y=screwed))
 
 

@@ -238,7 +238,7 @@ def pair_nearest(
     """
     own_azimuth, mate_azimuth = azimuths(build, at, sigma, tooth)
     start = start_on(build, pose, sigma, own_azimuth)
-    lean = leaning(own, sigma)
+    lean = leaning(own, handed(own, sigma))
     if lean != 0.0:
         start -= lean * face
     return nearest(
@@ -282,14 +282,15 @@ def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
     gap, turn, edge_turn, doubtful, least = math.inf, math.inf, math.inf, math.inf, math.inf
     best_tooth, acts = 0, True
     x, y, z, nx, ny, nz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    face = first_face(own, build.driven, pose, sigma, middle.low)
+    side = handed(own, sigma)
+    face = first_face(own, build.driven, pose, side, middle.low)
     in_middle = (0.5 * (pair.lowest + pair.highest) - sigma * at.driver) / pair.driver_pitch
     first_order = math.inf
     for step in range(count):
         tooth = sigma * middle_first(step, first, count, in_middle)
-        if one_base_pitch and leaning(own, sigma) != 0.0:
+        if one_base_pitch and leaning(own, side) != 0.0:
             start = start_on(build, pose, sigma, azimuths(build, at, sigma, tooth)[0])
-            order, leeway = promise(own, build.driven, pose, sigma, start, abs(gap) if gap < math.inf else 0.0)
+            order, leeway = promise(own, build.driven, pose, side, start, abs(gap) if gap < math.inf else 0.0)
             if order > first_order + leeway:
                 continue
             first_order = min(first_order, order)

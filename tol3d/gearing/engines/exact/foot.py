@@ -126,6 +126,13 @@ def external(kind: type) -> None:
     variant(widest, kind)(external_radius)
 
 
+def internal(kind: type) -> None:
+    """Register the gears of a kind, which know their sense, as those of internal pairs; see internal.py."""
+    variant(opening, kind)(internal_opening)
+    variant(handed, kind)(internal_side)
+    variant(widest, kind)(internal_radius)
+
+
 def straight(kind: type) -> None:
     """Register a kind of teeth whose generators keep their profile parameter along the face."""
     variant(leaning, kind)(straight_leaning)
@@ -161,3 +168,19 @@ def external_side(driver: Any, sigma: float) -> float:
 def external_radius(driver: Any, driven: Any, tangent: float) -> float:
     """r_1 r_2/(r_1 + r_2), where r_1 + r_2 is the tangent, is at most a quarter of it."""
     return 0.25 * tangent
+
+
+def internal_opening(driven: Any) -> float:
+    """The driven gear's flank lies on the other side of its tooth than the driver's."""
+    return -1.0
+
+
+def internal_side(driver: Any, sigma: float) -> Any:
+    """As the pinion's flank does."""
+    return sigma * driver.sense
+
+
+def internal_radius(driver: Any, driven: Any, tangent: float) -> Any:
+    """r_1 r_2/(r_2 - r_1), where r_2 - r_1 is the tangent, grows up to the pinion's tip."""
+    largest = driver.base * driver.end if driver.sense > 0.0 else driven.base * driven.end
+    return largest * (largest + tangent) / tangent

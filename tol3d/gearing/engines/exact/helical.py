@@ -1,4 +1,4 @@
-"""Screw involute flanks of external helical gears: the foot of a point on the mate's flank, in closed form.
+"""Screw involute flanks of helical gears, internal pairs too: the foot of a point on the mate's flank, in closed form.
 
 The section of a helical gear at the height z is that of a spur gear, turned by kappa z: see spur.py. Its flank is the
 developable surface of the tangents of the base helix. Along such a generator the normal is constant, the roll t falls
@@ -8,7 +8,7 @@ are the same screw turned: the gap closes as the mate turns by gap/(r_b cos beta
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tol3d.gearing.engines.exact.foot import (
     PER_TURN,
@@ -18,15 +18,17 @@ from tol3d.gearing.engines.exact.foot import (
     flank_of,
     foot,
     grown,
+    internal,
     leaning,
     line_of_action,
     promise,
     section,
     turn_to,
+    widest,
 )
 from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.spur import SHORTEST_TANGENT
-from tol3d.numerics.compiled import part, variant
+from tol3d.numerics.compiled import inlined, part, variant
 
 FREE_ENDS = 0.2  # mm; by which the ends of contact lines may lie elsewhere than nominal gears have them
 SQUARES = 2e-5  # mm; of leans of a milliradian over a face of 20 mm
@@ -91,13 +93,17 @@ def helical_leaning(tooth: HelicalTooth, sigma: float) -> float:
     return sigma * tooth.twist
 
 
-@variant(foot, HelicalTooth)
-def helical_foot(
-    helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, facing: Facing, roll: float, z: float
+@inlined
+def screw_foot(
+    own: Any, mate: Any, senses: tuple[float, float], pose: Pose, facing: Facing, profile: float, z: float
 ) -> Foot:
-    """See foot.foot: the point at a roll [rad] and a height [mm]; derivatives by the face are along the generator."""
+    """The foot of a point on screw involutes that unwind in their senses, 1 of an external gear, -1 of a ring's space.
+
+    Along a flank counts its roll [rad] times its sense; derivatives by the face are along the generator.
+    """
+    own_sense, mate_sense = senses
     own_azimuth, mate_azimuth, sigma, offset = facing
-    own = helical_tooth
+    roll = own_sense * profile
     phi = sigma * (roll - own.half) + own_azimuth + own.twist * z
     cos, sin = math.cos(phi), math.sin(phi)
     px = own.base * (cos + sigma * roll * sin)
@@ -111,8 +117,9 @@ def helical_foot(
     ux, uy = scale * (x * mate.base - sigma * y * tangent), scale * (y * mate.base + sigma * x * tangent)
     angle = sigma * (math.atan2(uy, ux) - mate_azimuth - mate.twist * height) + mate.half
     same_height = angle - TURN * math.floor(angle * PER_TURN + 0.5)
-    apart = (tangent - mate.base * same_height) * mate.cosine
-    nx, ny, nz = sigma * mate.cosine * uy, -sigma * mate.cosine * ux, sigma * mate.rise
+    apart = mate_sense * (tangent - mate.base * same_height) * mate.cosine
+    out = mate_sense * sigma
+    nx, ny, nz = out * mate.cosine * uy, -out * mate.cosine * ux, out * mate.rise
     # the point moves along (cos, sin) as it rolls, across it as that turns, and along its generator
     vx, vy, vz = pose.xx * cos + pose.xy * sin, pose.yx * cos + pose.yy * sin, pose.zx * cos + pose.zy * sin
     wx, wy, wz = pose.xy * cos - pose.xx * sin, pose.yy * cos - pose.yx * sin, pose.zy * cos - pose.zx * sin
@@ -121,25 +128,33 @@ def helical_foot(
     towards, turning = nx * vx + ny * vy + nz * vz, nx * wx + ny * wy + nz * wz
     across = own.base * roll * (ux * vx + uy * vy)
     sideways = ux * gx + uy * gy
-    curvature = mate.cosine / tangent
+    curvature = mate_sense * mate.cosine / tangent
     return Foot(
         apart - offset,
-        (tangent - apart * mate.cosine) / mate.base,
-        height - apart * sigma * mate.rise,
-        (tangent - offset * mate.cosine) / mate.base,
+        (mate_sense * tangent - apart * mate.cosine) / mate.base,
+        height - apart * out * mate.rise,
+        (mate_sense * tangent - offset * mate.cosine) / mate.base,
         x,
         y,
         height,
         nx,
         ny,
         nz,
-        own.base * roll * towards,
+        own_sense * own.base * roll * towards,
         nx * gx + ny * gy + nz * gz,
         own.base * (towards + sigma * roll * turning) + across * across * curvature,
-        across * sideways * curvature - sigma * slope * towards,
+        own_sense * (across * sideways * curvature - sigma * slope * towards),
         sideways * sideways * curvature,
         0.0,
     )
+
+
+@variant(foot, HelicalTooth)
+def helical_foot(
+    helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, facing: Facing, roll: float, z: float
+) -> Foot:
+    """See foot.foot: the point at a roll [rad] and a height [mm]."""
+    return screw_foot(helical_tooth, mate, (1.0, 1.0), pose, facing, roll, z)
 
 
 @variant(turn_to, HelicalTooth)
@@ -149,120 +164,269 @@ def helical_turn(mate: HelicalTooth, gap: float, offset: float, at: Foot) -> flo
 
 
 @part
-def falling(own: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float) -> tuple[float, float]:
+def falling(own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigma: float) -> tuple[float, float]:
     """Opening of the gap per height along the contact lines, nearly; and the tangent of both base circles [mm].
 
-    (0, 0) of parallel axes, and where there is no such tangent.
+    (0, 0) of parallel axes, and where there is no such tangent. The senses are those of screw_foot.
     """
-    square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
+    own_sense, mate_sense = senses
+    outside = own_sense * mate_sense
+    square, bases = pose.x * pose.x + pose.y * pose.y, outside * (own_sense * own.base + mate_sense * mate.base)
     if (pose.xz == 0.0 and pose.yz == 0.0) or square <= bases * bases:
         return 0.0, 0.0
     tangent, scale = math.sqrt(square - bases * bases), 1.0 / square
-    ux, uy = scale * (pose.x * bases - sigma * pose.y * tangent), scale * (pose.y * bases + sigma * pose.x * tangent)
-    # the driver's strings point against the mate's: its generators lean along -(-uy, ux)
-    wx, wy = pose.xx * uy - pose.yx * ux, pose.xy * uy - pose.yy * ux
+    cx, cy = own_sense * pose.x, own_sense * pose.y  # teeth of an internal pair meet beyond the axis of the inner gear
+    ux, uy = scale * (cx * bases - sigma * cy * tangent), scale * (cy * bases + sigma * cx * tangent)
+    # strings of two external gears point against each other: generators of the driver lean along -(-uy, ux)
+    wx, wy = outside * (pose.xx * uy - pose.yx * ux), outside * (pose.xy * uy - pose.yy * ux)
     slope = own.base * own.twist
     gx = slope * (pose.xx * wx + pose.xy * wy) + pose.xz
     gy = slope * (pose.yx * wx + pose.yy * wy) + pose.yz
     gz = slope * (pose.zx * wx + pose.zy * wy) + pose.zz
-    return sigma * (mate.cosine * (uy * gx - ux * gy) + mate.rise * gz), tangent
+    return mate_sense * sigma * (mate.cosine * (uy * gx - ux * gy) + mate.rise * gz), tangent
+
+
+@inlined
+def first_end(own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigma: float, face: float) -> float:
+    """The end of the common face towards which all contact lines close as axes lean; the middle of parallel axes."""
+    rate, tangent = falling(own, mate, senses, pose, sigma)
+    if tangent == 0.0:
+        return face
+    if rate > 0.0:
+        return max(own.low, mate.low - pose.z)
+    return min(own.high, mate.high - pose.z)
 
 
 @variant(first_face, HelicalTooth)
 def helical_first_face(helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float, face: float) -> float:
-    """The end of the common face towards which all contact lines close as axes lean; the middle of parallel axes."""
-    rate, tangent = falling(helical_tooth, mate, pose, sigma)
-    if tangent == 0.0:
-        return face
-    if rate > 0.0:
-        return max(helical_tooth.low, mate.low - pose.z)
-    return min(helical_tooth.high, mate.high - pose.z)
+    """See first_end."""
+    return first_end(helical_tooth, mate, (1.0, 1.0), pose, sigma, face)
+
+
+@inlined
+def screw_promise(
+    own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigma: float, start: float, apart: float
+) -> tuple[float, float]:
+    """The opening by the lean at the lower end of a contact line, to first order; see stack_up/contact_lines.py.
+
+    A line beside the flanks stands off by at least half its distance squared over their relative radius of curvature.
+    The leeway covers mates that stand apart, whose lines end elsewhere, and what goes with squares of the lean.
+    """
+    own_sense, mate_sense = senses
+    rate, tangent = falling(own, mate, senses, pose, sigma)
+    if tangent == 0.0 or own.twist == 0.0:
+        return 0.0, 0.0
+    lean = own_sense * sigma * own.twist
+    begin = max(own.begin, (own_sense * mate_sense * tangent - mate.base * mate.end) / own.base)
+    first, last = (start - begin) / lean, (start - own.end) / lean
+    low = max(min(first, last), own.low, mate.low - pose.z)
+    high = min(max(first, last), own.high, mate.high - pose.z)
+    beside = max(low - high, 0.0) * abs(lean) * own.base
+    end = low if rate > 0.0 else high
+    order = rate * (end - own_sense * sigma * own.rise * own.cosine * own.base * start)
+    order += beside * beside / (2.0 * widest(own, mate, tangent))
+    aside = (pose.xz * pose.xz + pose.yz * pose.yz) * max(own.low * own.low, own.high * own.high) / tangent
+    leeway = abs(rate) * (FREE_ENDS + 2.0 * apart * own.cosine / abs(own.rise)) + SQUARES + aside
+    return order, leeway + abs(rate) * 2.0 * beside * own.cosine / abs(own.rise)
 
 
 @variant(promise, HelicalTooth)
 def helical_promise(
     helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float, start: float, apart: float
 ) -> tuple[float, float]:
-    """The opening by the lean at the lower end of a contact line, to first order; see stack_up/contact_lines.py.
-
-    A line beside the flanks stands off by at least twice its distance squared over the tangent. The leeway covers
-    mates that stand apart, whose lines end elsewhere, and what goes with squares of the lean.
-    """
-    own = helical_tooth
-    rate, tangent = falling(own, mate, pose, sigma)
-    if tangent == 0.0 or own.twist == 0.0:
-        return 0.0, 0.0
-    lean = sigma * own.twist
-    begin = max(own.begin, (tangent - mate.base * mate.end) / own.base)
-    first, last = (start - begin) / lean, (start - own.end) / lean
-    low = max(min(first, last), own.low, mate.low - pose.z)
-    high = min(max(first, last), own.high, mate.high - pose.z)
-    beside = max(low - high, 0.0) * abs(lean) * own.base
-    end = low if rate > 0.0 else high
-    order = rate * (end - sigma * own.rise * own.cosine * own.base * start) + 2.0 * beside * beside / tangent
-    leeway = abs(rate) * (FREE_ENDS + 2.0 * apart * own.cosine / abs(own.rise)) + SQUARES
-    return order, leeway + abs(rate) * 2.0 * beside * own.cosine / abs(own.rise)
+    """See screw_promise."""
+    return screw_promise(helical_tooth, mate, (1.0, 1.0), pose, sigma, start, apart)
 
 
 @part
 def between(low: float, high: float, at: float, fall: float, begin: float, end: float) -> tuple[float, float]:
-    """The heights between two others at which a roll `at - fall z` lies between its ends."""
+    """The heights between two others at which a profile `at - fall z` lies between its ends."""
     if fall == 0.0:
         return (low, high) if begin <= at <= end else (low, low - 1.0)
     first, last = (at - begin) / fall, (at - end) / fall
     return max(low, min(first, last)), min(high, max(first, last))
 
 
-@variant(line_of_action, HelicalTooth)
-def helical_line_of_action(
-    helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, facing: Facing, face: float
+@inlined
+def screw_line_of_action(
+    own: Any, mate: Any, senses: tuple[float, float], pose: Pose, facing: Facing, face: float
 ) -> Nearest:
     """On parallel axes the flanks of a pair touch along a line: in every section as spur flanks, turned, do.
 
-    The gap is the same along that line, and for every pair of one base pitch; see spur.spur_line_of_action. Of the line
-    there are the heights at which both flanks have its rolls.
+    The gap is the same along that line, and for every pair of one base pitch; see spur.spur_line_of_action and, of
+    rings, internal.internal_line_of_action. Of the line there are the heights at which both flanks have its rolls.
     """
+    own_sense, mate_sense = senses
+    outside = own_sense * mate_sense
     own_azimuth, mate_azimuth, sigma, offset = facing
-    own = helical_tooth
     nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
-    square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
+    square, bases = pose.x * pose.x + pose.y * pose.y, outside * (own_sense * own.base + mate_sense * mate.base)
     if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:
         return nowhere
     tangent = math.sqrt(square - bases * bases)
     working = math.atan2(tangent, bases)
-    centres = math.atan2(pose.y, pose.x)
+    cx, cy = own_sense * pose.x, own_sense * pose.y
+    centres = math.atan2(cy, cx)
+    opposite = math.pi if outside > 0.0 else 0.0
     # turned about z against each other, the gears see one direction at different azimuths
     twist = math.atan2(pose.yx, pose.xx) if pose.yx != 0.0 else 0.0
-    angle = working + own.half - sigma * (own_azimuth + twist - centres - math.pi)
-    roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
+    angle = working + own.half - sigma * (own_azimuth + twist - centres - opposite)
+    profile = own_sense * (angle - TURN * math.floor(angle * PER_TURN + 0.5))
     angle = working + mate.half - sigma * (mate_azimuth + mate.twist * pose.z - centres)
-    mate_roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
-    gap = (tangent - own.base * roll - mate.base * mate_roll) * mate.cosine - offset
+    mate_profile = mate_sense * (angle - TURN * math.floor(angle * PER_TURN + 0.5))
+    gap = (outside * tangent - own.base * profile - mate.base * mate_profile) * mate.cosine - offset
     turn = gap * mate.per_arm
     low, high = max(own.low, mate.low - pose.z), min(own.high, mate.high - pose.z)
-    low, high = between(low, high, roll, sigma * own.twist, own.begin, own.end)
-    low, high = between(low, high, mate_roll, sigma * mate.twist, mate.begin, mate.end - max(turn, 0.0))
+    fall = own_sense * sigma * own.twist
+    low, high = between(low, high, profile, fall, own.begin, own.end)
+    low, high = between(low, high, mate_profile, mate_sense * sigma * mate.twist, mate.begin, mate.end - max(turn, 0.0))
     if low > high:
         return nowhere
     at = min(max(face, low), high)
-    roll -= sigma * own.twist * at
-    scale = 1.0 / square
-    ux, uy = scale * (pose.x * bases - sigma * pose.y * tangent), scale * (pose.y * bases + sigma * pose.x * tangent)
-    nx, ny = sigma * uy, -sigma * ux
-    along = tangent - own.base * roll
+    profile -= fall * at
+    scale, out = 1.0 / square, mate_sense * sigma
+    ux, uy = scale * (cx * bases - sigma * cy * tangent), scale * (cy * bases + sigma * cx * tangent)
+    nx, ny = out * uy, -out * ux
+    along = outside * tangent - own.base * profile
     x, y = mate.base * ux + along * nx, mate.base * uy + along * ny
     return Nearest(
         gap,
         turn,
         ALIKE,
-        roll,
+        profile,
         at,
         x,
         y,
         at + pose.z,
         mate.cosine * nx,
         mate.cosine * ny,
-        sigma * mate.rise,
+        out * mate.rise,
         False,
         0.0,
     )
+
+
+@variant(line_of_action, HelicalTooth)
+def helical_line_of_action(
+    helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, facing: Facing, face: float
+) -> Nearest:
+    """See screw_line_of_action."""
+    return screw_line_of_action(helical_tooth, mate, (1.0, 1.0), pose, facing, face)
+
+
+# gears inside rings -------------------------------------------------------------------------------
+
+
+class InternalHelicalTooth(NamedTuple):
+    """Flanks of one gear of an internal helical pair; see HelicalTooth and internal.InternalTooth.
+
+    Args:
+        base, per_arm, cosine, rise, twist: as of a helical gear.
+        half: half the angle [rad] that the involutes' own tooth takes at its base: of a ring the space, about the
+            middle of the ring's tooth, which is less by half a pitch.
+        begin, end: roll times sense [rad] where the flank begins at the root, and at the tip.
+        low, high: ends of the face [mm], along the axis.
+        sense: 1 of the pinion, -1 of the ring.
+    """
+
+    base: float
+    per_arm: float
+    cosine: float
+    rise: float
+    twist: float
+    half: float
+    begin: float
+    end: float
+    low: float
+    high: float
+    sense: float
+
+
+internal(InternalHelicalTooth)
+
+
+@part
+def ring_resized(tooth: InternalHelicalTooth, scale: float, low: float, high: float) -> InternalHelicalTooth:
+    """The teeth grown, between two heights [mm]."""
+    base, per_arm, twist = tooth.base * scale, tooth.per_arm / scale, tooth.twist / scale
+    profile = (tooth.half, tooth.begin, tooth.end)
+    return InternalHelicalTooth(base, per_arm, tooth.cosine, tooth.rise, twist, *profile, low, high, tooth.sense)
+
+
+@variant(grown, InternalHelicalTooth)
+def ring_grown(tooth: InternalHelicalTooth, scale: float) -> InternalHelicalTooth:
+    """Every length grows, angles stay."""
+    return ring_resized(tooth, scale, tooth.low * scale, tooth.high * scale)
+
+
+@variant(flank_of, InternalHelicalTooth)
+def ring_flank(
+    tooth: InternalHelicalTooth, flanks: float, gear: int, place: float, sigma: float
+) -> InternalHelicalTooth:
+    """All flanks are alike."""
+    return tooth
+
+
+@variant(section, InternalHelicalTooth)
+def ring_section(tooth: InternalHelicalTooth, share: float) -> InternalHelicalTooth:
+    """One height."""
+    at = tooth.low + share * (tooth.high - tooth.low)
+    return ring_resized(tooth, 1.0, at, at)
+
+
+@variant(leaning, InternalHelicalTooth)
+def ring_leaning(tooth: InternalHelicalTooth, sigma: float) -> float:
+    """-sigma kappa of the roll along a generator, times the sense."""
+    return tooth.sense * sigma * tooth.twist
+
+
+@variant(foot, InternalHelicalTooth)
+def ring_foot(
+    internal_helical_tooth: InternalHelicalTooth,
+    mate: InternalHelicalTooth,
+    pose: Pose,
+    facing: Facing,
+    profile: float,
+    z: float,
+) -> Foot:
+    """See foot.foot: the point at a roll times sense [rad] and a height [mm]; sigma is the side of unwinding."""
+    senses = (internal_helical_tooth.sense, mate.sense)
+    return screw_foot(internal_helical_tooth, mate, senses, pose, facing, profile, z)
+
+
+@variant(turn_to, InternalHelicalTooth)
+def ring_turn(mate: InternalHelicalTooth, gap: float, offset: float, at: Foot) -> float:
+    """Flanks of one tooth that stand a turn apart lie r_b cos(beta_b) times that apart."""
+    return gap * mate.per_arm
+
+
+@variant(first_face, InternalHelicalTooth)
+def ring_first_face(
+    internal_helical_tooth: InternalHelicalTooth, mate: InternalHelicalTooth, pose: Pose, sigma: float, face: float
+) -> float:
+    """See first_end."""
+    senses = (internal_helical_tooth.sense, mate.sense)
+    return first_end(internal_helical_tooth, mate, senses, pose, sigma, face)
+
+
+@variant(promise, InternalHelicalTooth)
+def ring_promise(
+    internal_helical_tooth: InternalHelicalTooth,
+    mate: InternalHelicalTooth,
+    pose: Pose,
+    sigma: float,
+    start: float,
+    apart: float,
+) -> tuple[float, float]:
+    """See screw_promise."""
+    senses = (internal_helical_tooth.sense, mate.sense)
+    return screw_promise(internal_helical_tooth, mate, senses, pose, sigma, start, apart)
+
+
+@variant(line_of_action, InternalHelicalTooth)
+def ring_line_of_action(
+    internal_helical_tooth: InternalHelicalTooth, mate: InternalHelicalTooth, pose: Pose, facing: Facing, face: float
+) -> Nearest:
+    """See screw_line_of_action."""
+    senses = (internal_helical_tooth.sense, mate.sense)
+    return screw_line_of_action(internal_helical_tooth, mate, senses, pose, facing, face)

@@ -16,13 +16,11 @@ from tol3d.gearing.engines.exact.foot import (
     flank_of,
     foot,
     grown,
-    handed,
+    internal,
     line_of_action,
-    opening,
     section,
     straight,
     turn_to,
-    widest,
 )
 from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.spur import involute_foot
@@ -51,6 +49,7 @@ class InternalTooth(NamedTuple):
     sense: float
 
 
+internal(InternalTooth)
 straight(InternalTooth)
 
 
@@ -72,25 +71,6 @@ def internal_section(tooth: InternalTooth, share: float) -> InternalTooth:
     """One height."""
     at = tooth.low + share * (tooth.high - tooth.low)
     return InternalTooth(tooth.base, tooth.per_base, tooth.half, tooth.begin, tooth.end, at, at, tooth.sense)
-
-
-@variant(opening, InternalTooth)
-def internal_opening(driven: InternalTooth) -> float:
-    """The driven gear's flank lies on the other side of its tooth than the driver's."""
-    return -1.0
-
-
-@variant(handed, InternalTooth)
-def internal_side(driver: InternalTooth, sigma: float) -> float:
-    """As the pinion's flank does."""
-    return sigma * driver.sense
-
-
-@variant(widest, InternalTooth)
-def internal_radius(driver: InternalTooth, driven: InternalTooth, tangent: float) -> float:
-    """r_1 r_2/(r_2 - r_1), where r_2 - r_1 is the tangent, grows up to the pinion's tip."""
-    largest = driver.base * driver.end if driver.sense > 0.0 else driven.base * driven.end
-    return largest * (largest + tangent) / tangent
 
 
 @variant(foot, InternalTooth)

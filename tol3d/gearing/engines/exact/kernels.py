@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.deviated_rows import gap_deviated_rows, read_deviated_rows, rest_deviated_rows
-from tol3d.gearing.engines.exact.helical import HelicalTooth
+from tol3d.gearing.engines.exact.helical import HelicalTooth, InternalHelicalTooth
 from tol3d.gearing.engines.exact.internal import InternalTooth
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rests import rest_rows
@@ -38,6 +38,7 @@ SPUR = (SpurTooth, SpurTooth, PairNumbers, Pose)
 DEVIATED = (DeviatedTooth, DeviatedTooth, PairNumbers, Pose)
 HELICAL = (HelicalTooth, HelicalTooth, PairNumbers, Pose)
 INTERNAL = (InternalTooth, InternalTooth, PairNumbers, Pose)
+INTERNAL_HELICAL = (InternalHelicalTooth, InternalHelicalTooth, PairNumbers, Pose)
 BEVEL = (BevelTooth, BevelTooth, PairNumbers, Pose)
 
 spur_read, spur_gaps = Kernel(read_rows, SPUR, READ), Kernel(gap_rows, SPUR, GAPS)
@@ -47,6 +48,9 @@ helical_read, helical_gaps = Kernel(read_rows, HELICAL, READ), Kernel(gap_rows, 
 helical_rests = Kernel(rest_rows, HELICAL, REST)
 internal_read, internal_gaps = Kernel(read_rows, INTERNAL, READ), Kernel(gap_rows, INTERNAL, GAPS)
 internal_rests = Kernel(rest_rows, INTERNAL, REST)
+internal_helical_read = Kernel(read_rows, INTERNAL_HELICAL, READ)
+internal_helical_gaps = Kernel(gap_rows, INTERNAL_HELICAL, GAPS)
+internal_helical_rests = Kernel(rest_rows, INTERNAL_HELICAL, REST)
 deviated_read = Kernel(read_deviated_rows, DEVIATED, READ_DEVIATED)
 deviated_gaps = Kernel(gap_deviated_rows, DEVIATED, GAPS_DEVIATED)
 deviated_rests = Kernel(rest_deviated_rows, DEVIATED, REST_DEVIATED)
@@ -103,10 +107,19 @@ def _(pair: SpurPair) -> PairKernels:
 
 
 def _helical(gear: SpurGear) -> HelicalTooth:
-    half, sine = gear.face_width / 2, gear.hand * math.sin(gear.base_helix_angle)
-    helix = (gear.base_helix_cosine, sine, gear.twist)
     profile = (gear.base_half_angle, gear.form_roll, gear.tip_roll)
-    return HelicalTooth(gear.base_radius, 1.0 / gear.section_arm, *helix, *profile, -half, half)
+    return HelicalTooth(*_screw(gear), *profile, -gear.face_width / 2, gear.face_width / 2)
+
+
+def _screw(gear: SpurGear | InternalGear) -> tuple[float, float, float, float, float]:
+    """Base radius, one over the arm of a turn, cosine of the base helix angle, its sine by the hand, and twist."""
+    sine = gear.hand * math.sin(gear.base_helix_angle)
+    return gear.base_radius, 1.0 / gear.section_arm, gear.base_helix_cosine, sine, gear.twist
+
+
+def _helical_in_ring(gear: SpurGear | InternalGear) -> InternalHelicalTooth:
+    _, _, *own = _in_ring(gear)
+    return InternalHelicalTooth(*_screw(gear), *own)
 
 
 def _spur(gear: SpurGear) -> SpurTooth:
@@ -134,6 +147,9 @@ def _(pair: InternalPair) -> PairKernels:
         by_tilt_x=0.0,
         by_tilt_y=0.0,
     )._replace(ratio=-pair.wheel.teeth / pair.pinion.teeth)
+    if pair.pinion.helix_angle:
+        helical = (_helical_in_ring(pair.pinion), _helical_in_ring(pair.wheel), numbers, _nominal(pair))
+        return PairKernels(helical, internal_helical_read, internal_helical_gaps, internal_helical_rests)
     return PairKernels((driver, driven, numbers, _nominal(pair)), internal_read, internal_gaps, internal_rests)
 
 

@@ -13,9 +13,9 @@ from tol3d.gearing.grammar.cylindrical import CylindricalSpec, cylindrical_gear_
 from tol3d.gearing.grammar.parts import (
     ExternalGearSpec,
     GearSpec,
-    HelicalGearSpec,
     InternalGearSpec,
     ShaftSpec,
+    helix_of,
 )
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
     GearToleranceSpec,
@@ -237,8 +237,7 @@ class ToothThicknessSpec(GearToleranceSpec):
             return None
         if not isinstance(gear, ExternalGearSpec | InternalGearSpec):
             return None
-        helix = gear.helix_angle.internal if isinstance(gear, HelicalGearSpec) else 0.0
-        return gear.teeth * gear.module.internal / math.cos(helix)
+        return gear.teeth * gear.module.internal / math.cos(helix_of(gear)[0])
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""
