@@ -18,6 +18,7 @@ const LINE = 15; // pixels between words of two names
 const TRIES = [0, 1, -1, 2, -2, 3, -3]; // lines by which words move to where there is room
 const BESIDE = [2, -2, 3, -3, 4, -4]; // those of a measure's number, which leaves its line free
 const NEAR = 12; // pixels from a place within which a pointer is over it
+const DOT = 6; // and within which a click is on its dot
 const SIGNS = {
   "⌖": "M8 1v14M1 8h14M8 3.5a4.5 4.5 0 1 0 .01 0z", "⌭": "M8 4.5a3.5 3.5 0 1 0 .01 0zM1.5 14l4-12M10.5 14l4-12",
   "⌓": "M2 11a6 6 0 0 1 12 0z", "⌒": "M2 11a6 6 0 0 1 12 0", "⌯": "M4 5h8M1 8h14M4 11h8", "⏤": "M1 8h14",
@@ -45,6 +46,7 @@ async function unpacked(base64) {
 class View {
   #picked = () => {};
   #lit = null; // names of parts and features, or all
+  #acting = null; // names of tolerances, or all
   #shown = { build: 0, state: 0 };
   #geometries = [];
   #asked = 0; // models
@@ -159,10 +161,19 @@ class View {
     this.pose();
   }
 
-  // Leave parts and features of these names in their colours, all others grey; null: all in colours.
-  light(names) {
+  // Leave parts and features of these names in their colours, all others grey; null: all in colours. Where tolerances are
+  // named too, flags of others and of datums on other parts are grey.
+  light(names, tolerances = null) {
     this.#lit = names && new Set(names);
+    this.#acting = names && tolerances && new Set(tolerances);
     this.pose();
+  }
+
+  // True of a flag that is grey.
+  #isIdle(flag) {
+    if (!this.#acting) return false;
+    if (flag.name) return !this.#acting.has(flag.name);
+    return !flag.of.some((name) => this.#lit.has(name) || this.#lit.has(this.told.features[name]?.part));
   }
 
   // Call back at a click that is no drag with the names of the part and the feature there, null where there is none.
@@ -238,21 +249,29 @@ class View {
     canvas.addEventListener("pointerup", (event) => {
       const still = from && Math.hypot(event.clientX - from.clientX, event.clientY - from.clientY) < STILL;
       from = null;
-      if (still && event.button === 0) this.#picked(...this.#at(event));
+      if (still && event.button === 0) this.#picked(...(this.#dot(event) ?? this.#at(event)));
     });
   }
 
-  // Names of the part and the feature under a pointer.
+  // Names of the part and the feature whose dot is under a pointer; null where there is none.
+  #dot(event) {
+    const { features } = this.told, seen = new Set(this.parts.filter((own) => own.visible).map((own) => own.userData.part));
+    const isDot = (label) => !label.element.classList.contains("covered") && seen.has(features[label.feature]?.part);
+    const own = this.#nearestLabel(event, DOT, isDot);
+    return own && [features[own.feature].part, own.feature];
+  }
+
+  // Names of the part and the feature under a pointer: through what is clear, to what is opaque or lies within it.
   #at(event) {
     const box = this.renderer.domElement.getBoundingClientRect();
     const place = new Vector2((event.clientX - box.x) / box.width, (box.y - event.clientY) / box.height);
     const ray = new Raycaster();
     ray.setFromCamera(place.multiplyScalar(2).add(new Vector2(-1, 1)), this.camera);
-    const [hit] = ray.intersectObjects(this.parts.filter((part) => part.visible));
-    if (!hit) return [null, null];
-    const { part, features } = hit.object.userData;
-    const feature = features.find(([, first, count]) => hit.faceIndex >= first && hit.faceIndex < first + count);
-    return [part, feature ? feature[0] : this.#nearest(hit)];
+    const hits = ray.intersectObjects(this.parts.filter((part) => part.visible));
+    if (!hits.length) return [null, null];
+    const isClear = (own) => own.object.userData.opacity < 1 && !marked(own);
+    const hit = hits.reduce((kept, own) => (isClear(kept) && (!isClear(own) || within(own.object, kept.object)) ? own : kept));
+    return [hit.object.userData.part, marked(hit) ?? this.#nearest(hit)];
   }
 
   // The feature on whose face a part is hit, where it lies undeviated: of those that are as near the smallest.
@@ -296,13 +315,15 @@ class View {
     const named = this.#hides.name ? [] : Object.entries(state.names);
     for (const [name, place] of named) {
       const feature = Object.hasOwn(state.features ?? {}, name) ? name : name.slice(0, Math.max(name.lastIndexOf(", "), 0));
-      if (!flags.has(feature)) found.push({ kind: "name", lines: [name], of: [name, feature], place: new Vector3().fromArray(place) });
+      if (!flags.has(feature)) found.push({ kind: "name", lines: [name], of: [name, feature], place: new Vector3().fromArray(place), feature });
     }
     for (const { name, place, own } of flags.values()) {
-      const datum = own.some((flag) => !flag.name);
-      const lines = [datum ? `${name} ◣` : name, ...own.filter((flag) => flag.name).map((flag) => flag.words)];
-      const full = [datum ? `${name}, datum` : name, ...own.filter((flag) => flag.name).map((flag) => `${flag.name}: ${flag.words}`)];
-      found.push({ kind: "flag", lines, full, of: own.flatMap((flag) => [flag.name, ...flag.of]), place });
+      const datum = own.some((flag) => !flag.name), isIdle = (flag) => this.#isIdle(flag);
+      const named = own.filter((flag) => flag.name).sort((one, other) => isIdle(one) - isIdle(other));
+      const lines = [datum ? `${name} ◣` : name, ...named.map((flag) => flag.words)];
+      const full = [datum ? `${name}, datum` : name, ...named.map((flag) => `${flag.name}: ${flag.words}`)];
+      const idle = named.filter(isIdle).length; // the last of them
+      found.push({ kind: own.every(isIdle) ? "flag idle" : "flag", lines, full, idle, of: own.flatMap((flag) => [flag.name, ...flag.of]), place, feature: name });
     }
     this.#lines = (state.measured?.[this.#measure] ?? []).map(([points, error]) => (
       { points: points.map((point) => new Vector3().fromArray(point)), error }
@@ -313,7 +334,7 @@ class View {
       element.className = own.kind;
       element.place = own.place;
       element.append(words);
-      fill(words, own.lines);
+      fill(words, own.lines, own.idle);
       return { ...own, element, words };
     });
     this.#over = null;
@@ -467,7 +488,7 @@ class View {
 
   // Words where they cover none that count more; others are hidden until a pointer is over their place.
   #arrange(width, height) {
-    const weight = (own) => own === this.#over ? 0 : own.kind === "number" ? 1
+    const weight = (own) => own === this.#over ? 0 : own.kind === "number" ? 1 : own.kind === "flag idle" ? 5
       : own.of.some((name) => this.#first.has(name)) ? 2 : own.kind === "name" ? 3 : 4;
     const taken = this.#lines.flatMap((line) => line.seen.slice(0, 2).map(([x, y]) => [x - HEAD, y - HEAD, 2 * HEAD, 2 * HEAD]));
     const ends = taken.length;
@@ -491,19 +512,23 @@ class View {
     }
   }
 
+  // The label whose place is nearest to a pointer, of some, within so many pixels; null where there is none.
+  #nearestLabel(event, most, isOne) {
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const off = (own) => Math.hypot(own.x - event.clientX + box.x, own.y - event.clientY + box.y);
+    const near = this.#labels.filter((own) => !own.element.hidden && isOne(own) && off(own) < most);
+    return near.sort((one, other) => off(one) - off(other))[0] ?? null;
+  }
+
   // The label whose place is under the pointer shows all of its words.
   #look(event) {
     let over = null;
-    if (event && !event.buttons) {
-      const box = this.renderer.domElement.getBoundingClientRect();
-      const off = (own) => own.element.hidden ? Infinity : Math.hypot(own.x - event.clientX + box.x, own.y - event.clientY + box.y);
-      over = this.#labels.filter((own) => off(own) < NEAR).sort((one, other) => off(one) - off(other))[0] ?? null;
-    }
+    if (event && !event.buttons) over = this.#nearestLabel(event, NEAR, () => true);
     if (over === this.#over) return;
     const before = this.#over;
     this.#over = over;
-    if (before) fill(before.words, before.lines);
-    if (over) fill(over.words, over.full ?? over.lines, Infinity);
+    if (before) fill(before.words, before.lines, before.idle);
+    if (over) fill(over.words, over.full ?? over.lines, over.idle, Infinity);
     for (const own of [before, over].filter((one) => one)) own.size = [own.words.offsetWidth, own.words.offsetHeight];
     const { clientWidth: width, clientHeight: height } = this.names;
     this.#arrange(width, height);
@@ -519,10 +544,25 @@ function is(name, stated) {
   return name === stated || (name.startsWith(`${stated} `) && /^(\d+$|of )/.test(name.slice(stated.length + 1)));
 }
 
-// Lines of a label, no more than so many.
-function fill(words, every, most = MOST_LINES) {
+// The feature whose own triangles are hit, by its name.
+function marked({ object, faceIndex }) {
+  return object.userData.features.find(([, first, count]) => faceIndex >= first && faceIndex < first + count)?.[0];
+}
+
+// True if a part lies in the box about another.
+function within(part, other) {
+  return new Box3().setFromObject(other).containsBox(new Box3().setFromObject(part));
+}
+
+// Lines of a label, no more than so many; the last ones, so many, are grey.
+function fill(words, every, idle = 0, most = MOST_LINES) {
   const more = every.length - most, lines = more > 0 ? [...every.slice(0, most), `and ${more} more`] : every;
-  words.replaceChildren(...lines.flatMap((line, k) => [...(k ? [document.createElement("br")] : []), ...signed(line)]));
+  words.replaceChildren(...lines.flatMap((line, k) => {
+    const own = document.createElement("i");
+    if (k >= every.length - idle) own.className = "idle";
+    own.append(...signed(line));
+    return k ? [document.createElement("br"), own] : [own];
+  }));
 }
 
 // Words with the signs of drawings drawn: many systems have no font with them.

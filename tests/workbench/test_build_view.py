@@ -3,7 +3,7 @@
 import io
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -322,6 +322,13 @@ PROJECTED = """Object.fromEntries([...document.querySelectorAll('.names span')].
 """Places of names in the stage, by what is written there."""
 
 
+DOTS = """[...document.querySelectorAll('.names span:not(.covered)')].map((own) => {
+  const at = own.place.clone().project(view.camera);
+  return [own.querySelector('i').textContent, [(at.x + 1) * 400, (1 - at.y) * 300]];
+}).filter(([words]) => view.told.features[words.replace(" ◣", "").split(",")[0]])"""
+"""Dots of features in the stage."""
+
+
 @contextmanager
 def _served(files: Mapping[str, tuple[str, bytes]]) -> Iterator[str]:
     """Within it these files, with their types, at the address that it gives, under a strict policy."""
@@ -357,6 +364,7 @@ def page() -> Iterator[Page]:
         "first": build_view(pair, {"trial": _row(pair)}),
         "second": build_view(door, {}),
         "box": build_view(box, {}),
+        "housing": build_view(_simulation("gearbox_in_housing"), {}),
         "hexapod": build_view(hexapod, {"trial": _row(hexapod)}, factors=(1.0, 10.0), measure=HEIGHT),
     }
     files = {
@@ -454,6 +462,87 @@ def test_a_click_on_a_face_names_its_feature(page: Page) -> None:
         assert picked.count(feature) >= 4, picked
         assert {name for name in picked if "." not in name} == {part}
     page.ask("view.parts.forEach((own) => { own.visible = true; }), view.fit()")
+
+
+@pytest.mark.slow
+def test_a_click_on_the_dot_of_a_feature_names_it_whatever_lies_before_it(page: Page) -> None:
+    page.ask("opened('box').then(found => view.replace(...found)).then(() => view.fit())")
+    datums = ["box.A", "box.D", "bracket.A", "bracket.B"]
+    page.ask(f"view.flags({json.dumps([{'name': '', 'of': [own], 'words': 'datum'} for own in datums])})")
+    dots = page.ask(DOTS)
+    apart = [
+        (text.removesuffix(" ◣"), place)
+        for text, place in dots
+        if all(np.hypot(*np.subtract(place, other)) > 12.0 for words, other in dots if words != text)
+    ]
+    assert len(apart) > 5
+    assert {text for text, _ in apart} & {*datums}
+    for text, (x, y) in apart:
+        feature = text.partition(",")[0]
+        _press(page, x + 2.0, y - 2.0)
+        assert page.ask("picks.splice(0)") == [[feature.partition(".")[0], feature]]
+    page.ask("view.flags([])")
+
+
+@pytest.mark.slow
+def test_a_click_goes_through_what_is_clear_to_the_part_within(page: Page) -> None:
+    """Gears within a housing are opaque; a bracket in a box is as clear as the box."""
+    page.ask("opened('housing').then(found => view.replace(...found)).then(() => view.fit())")
+    gears = page.ask("view.parts.filter((own) => own.userData.opacity === 1).map((own) => own.userData.part)")
+    clear = page.ask("view.parts.filter((own) => own.userData.opacity < 1).map((own) => own.userData.part)")
+    assert len(gears) > 1
+    assert clear == ["housing", "cover"]
+    _require_picked_within(page, gears, clear)
+    page.ask("opened('box').then(found => view.replace(...found)).then(() => view.fit())")
+    _require_picked_within(page, ["bracket"], ["box"])
+
+
+def _require_picked_within(page: Page, inner: Sequence[str], outer: Sequence[str]) -> None:
+    """Clicks where an inner part is seen alone pick it through the outer ones, but for marks of their features."""
+    places = [(float(x), float(y)) for x in range(100, 800, 50) for y in range(80, 600, 50)]
+    seen = list[list[tuple[str, str]]]()
+    for names in (inner, outer, (*inner, *outer)):
+        some = f"own.visible = {json.dumps([*names])}.includes(own.userData.part)"
+        page.ask(f"view.parts.forEach((own) => {{ {some}; }}), view.draw()")
+        for place in places:
+            _press(page, *place)
+        seen.append([(part, feature) for part, feature in page.ask("picks.splice(0)")])
+    page.ask("view.parts.forEach((own) => { own.visible = true; })")
+    rows = [*zip(*seen, strict=True)]
+    within = [both for (alone, _), _, both in rows if alone]
+    assert sum(part in inner for part, _ in within) > max(5, 0.6 * len(within))
+    assert all(feature is not None for part, feature in within if part not in inner)
+    assert {part for (alone, _), (around, _), (part, _) in rows if around and not alone} <= {*outer}
+
+
+@pytest.mark.slow
+def test_flags_of_tolerances_that_do_not_act_are_grey(page: Page) -> None:
+    page.ask("opened('hexapod').then(found => view.replace(...found)).then(() => view.fit())")
+    flags = [
+        {"name": "", "of": ["foot 1.seat"], "words": "datum"},
+        {"name": "", "of": ["platform.P2"], "words": "datum"},
+        {"name": "idle", "of": ["platform.P1"], "words": "idle words"},
+        {"name": "acts", "of": ["platform.P1"], "words": "words that act"},
+        {"name": "far", "of": ["platform.P3"], "words": "far words"},
+        {"name": "whole", "of": ["platform"], "words": "whole words"},
+    ]
+    page.ask(f"view.flags({json.dumps(flags)})")
+    grey = """[...document.querySelectorAll('.names .flag')].map((own) => [
+      own.textContent, own.classList.contains("idle"),
+      [...own.querySelectorAll("i.idle")].map((line) => line.textContent),
+    ])"""
+    assert {(text, idle) for text, idle, _ in page.ask(grey)} >= {("platform.P1idle wordswords that act", False)}
+    page.ask("view.light(['platform'], ['acts'])")
+    assert {text: (idle, lines) for text, idle, lines in page.ask(grey)} == {
+        "foot 1.seat ◣": (True, []),
+        "platform.P2 ◣": (False, []),
+        "platform.P1words that actidle words": (False, ["idle words"]),
+        "platform.P3far words": (True, ["far words"]),
+        "platformwhole words": (True, ["whole words"]),
+    }
+    page.ask("view.light(['platform.P3'])")
+    assert {idle for _, idle, _ in page.ask(grey)} == {False}, "no tolerances are named"
+    page.ask("view.light(null), view.flags([])")
 
 
 def _overlap(one: list[float], other: list[float]) -> bool:

@@ -135,7 +135,8 @@ function positions() { // none of them: those of the trial
 function light() {
   if (!view) return;
   view.prefer([...(app.acting?.entries ?? []), ...(app.acting?.parts ?? [])]);
-  view.light(chosen ?? ($("lit").checked && app.acting?.parts.length ? app.acting.parts : null));
+  const acting = !chosen && $("lit").checked && app.acting?.parts.length ? app.acting : null;
+  view.light(chosen ?? acting?.parts ?? null, acting?.entries);
 }
 
 function find(part, feature) {
