@@ -169,7 +169,7 @@ def test_a_measure_that_has_no_slope_at_its_mean_has_a_worst_case_all_the_same()
     found = alone(own)
     assert worst_of(found) == pytest.approx((0.0, 1000.0), abs=1e-9)
     assert (found.by_slopes, found.rss, found.factor, found.modified_rss) == (None, None, None, None)
-    page = methods_report(methods(own), own.contributors)
+    page = methods_report(methods(own))
     told = {row.label: [str(cell) for cell in row.cells[:2]] for row in page.tables[0].rows}
     assert {name: told[name] for name in ("worst by slopes", "RSS")} == {"worst by slopes": ["–"] * 2, "RSS": ["–"] * 2}
     assert NO_SLOPE in "".join(str(block) for block in page.blocks if isinstance(block, Line))

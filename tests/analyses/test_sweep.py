@@ -12,10 +12,11 @@ from toys.registered import TOYS, known
 
 import tol3d
 from tol3d import InputError, Overrides, run_scene
-from tol3d.analyses.sweep_picture import sweep_figure
+from tol3d.analyses.sweep_charts import sweep_charts
 from tol3d.analyses.sweep_table import sweep_report, whole_table
 from tol3d.analyses.variant_sweep import Order, Sweep, SweepQuestion, sweep
 from tol3d.analyses.variants import Variable, grid_of, hypercube_of, plain_number, variable, variable_of
+from tol3d.report.chart_figure import figure_of
 from tol3d.report.sheet import as_text
 from tol3d.simulate import load
 from tol3d.study.execution.watch import Watch
@@ -215,7 +216,7 @@ def test_a_picture_shows_all_variants(found: Sweep, fields: int) -> None:
             ],
         }
     )
-    figure = sweep_figure(own)
+    figure = figure_of(sweep_charts(own))
     axes = figure.axes
     assert len(axes) == {1: 2, 2: 4, 3: 6}[fields]  # of a map, each with its bar
     if fields == 1:
@@ -260,7 +261,7 @@ def test_a_mechanism_from_outside(tmp_path: Path) -> None:
         assert first is not None
         assert second is not None
         assert second - first == pytest.approx(10.0, abs=1.0)  # the mean of a uniform law by half of its upper end
-        assert sweep_figure(own).axes
+        assert figure_of(sweep_charts(own)).axes
 
 
 @pytest.mark.slow

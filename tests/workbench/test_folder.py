@@ -18,9 +18,11 @@ from places import SPUR_PAIR
 
 from tol3d import InputError, Overrides, RunError, run_scene
 from tol3d.analyses import answers
+from tol3d.analyses.variants import variable_of
 from tol3d.apps.workbench import commands, made_runs
 from tol3d.apps.workbench import jobs as jobs_module
 from tol3d.apps.workbench.answer import keep_answer
+from tol3d.apps.workbench.asked_analysis import OF_STUDY, ask
 from tol3d.apps.workbench.attempt import JOBS, Attempt, Progress, Said
 from tol3d.apps.workbench.folder_questions import FolderQuestions
 from tol3d.apps.workbench.forms import ANALYSES
@@ -91,6 +93,9 @@ def test_a_form_asks_for_every_argument_and_shows_the_default_of_its_command(kin
     assert set(form.found) == set(WORDS[kind]) - {"factor"}, "a factor is a new value that begins with x"
     defaults = inspect.signature(getattr(answers, kind)).parameters
     for name, controls in form.found.items():
+        if kind == "sweep" and name in OF_STUDY:
+            assert WORDS[kind][name].default == "the study's"
+            continue
         default, (first, *_) = defaults[name].default, controls
         if default is False:
             assert first["type"] == "checkbox"
@@ -99,6 +104,95 @@ def test_a_form_asks_for_every_argument_and_shows_the_default_of_its_command(kin
             assert str(default) in (form.texts if first["tag"] == "select" else [first["placeholder"]])
     if "measure" in form.found:
         assert {"normal backlash", "lost motion"} <= {own.strip() for own in form.texts}
+
+
+def test_a_sweep_offers_the_numbers_of_the_scene(pair: Questions) -> None:
+    form = pair.forms({**PAIR, "kind": "sweep"})["form"]
+    offered = dict(re.findall('<option value="([^"]*)=">now ([^<]*)</option>', form))
+    assert offered["parts.pinion.teeth"] == "28"
+    assert offered["tolerances.centre distance.distribution.upper"] == "20 um"
+    assert offered["moves.gear pair.centre_distance"] == "172.5 mm"
+    assert not any(own.startswith(("study", "published", "scene")) for own in offered)
+    scene = pair.session(PAIR["scene"]).scene
+    for field, now in offered.items():
+        (number,) = variable_of(f"{field}={now}").values
+        assert scene.with_({field: number}).model_dump() == scene.model_dump(), field
+
+
+REFUSED: list[tuple[str, dict[str, Any], str, str, str]] = [
+    ("effects", {"base": "63", "seed": "2"}, "base", "", "expected a power of two pairs of builds"),
+    ("effects", {"position": "as-input", "measure": "nothing"}, "measure", "", "expected a measure, got 'nothing'"),
+    (
+        "what_if",
+        {"set": {"centre distance": "±9 um", "bearing clearance": "3 kg"}},
+        "set",
+        "bearing clearance",
+        "expected",
+    ),
+    (
+        "what_if",
+        {"set": {"centre distance": "±9 um", "bearing clearance": "x9"}},
+        "factor",
+        "bearing clearance",
+        "bearing",
+    ),
+    ("what_if", {"limits": {"lost motion": "3 um..9 um"}}, "limits", "lost motion", "expected an angle"),
+    (
+        "changes",
+        {"measure": "lost motion", "builds": "50"},
+        "measure",
+        "",
+        "expected a limit (lower_limit, upper_limit)",
+    ),
+    ("allocate", {"bounds": "2..3", "ppk": "1.2"}, "bounds", "", "expected bounds above 0 with 1 between them"),
+    ("allocate", {"bound": {"centre distance": "all"}}, "bound", "centre distance", "expected bounds of factors"),
+    ("allocate", {"ppk": "1000", "freeze": ["centre distance"]}, "ppk", "", "expected a number above 0 and below 10"),
+    ("rare", {"measure": "lost motion"}, "measure", "", "expected a limit (lower_limit, upper_limit)"),
+    ("methods", {"measure": "nothing", "trials": "100"}, "measure", "", "expected a measure, got 'nothing'"),
+    ("sweep", {}, "", "", "expected a number to vary, FIELD=values"),
+    (
+        "sweep",
+        {"vary": ["parts.pinion.teeth=17,19", "parts.wheel.teeth=100..110"]},
+        "vary",
+        "parts.wheel.teeth=100..110",
+        "parts.wheel.teeth: expected a step",
+    ),
+    ("sweep", {"vary": ["parts.pinion.teeth=17,19"], "engine": "none"}, "engine", "", "expected one of exact"),
+    (
+        "sweep",
+        {"vary": ["parts.pinon.teeth=17,19"]},
+        "vary",
+        "parts.pinon.teeth=17,19",
+        "parts.pinon.teeth: expected a name",
+    ),
+]
+
+
+@pytest.mark.parametrize(("kind", "fields", "argument", "of", "message"), REFUSED)
+def test_what_a_command_refuses_is_told_at_the_field_before_there_is_a_job(
+    kind: Analysis, fields: dict[str, Any], argument: str, of: str, message: str, pair: Questions, tmp_path: Path
+) -> None:
+    refused = pair.fit({**PAIR, "kind": kind, "fields": fields})["refused"]
+    assert (refused["argument"], refused["of"]) == (argument, of)
+    assert refused["message"].startswith(message)
+    with pytest.raises(InputError) as error:
+        ask(kind, SPUR_PAIR, words_of(kind, fields), answers.silent)
+    assert str(error.value).endswith(refused["message"]), "the words of the command"
+
+
+def test_what_begins_to_evaluate_is_not_refused_and_evaluates_nothing(pair: Questions) -> None:
+    before = pair.session(PAIR["scene"]).response.evaluations
+    for kind, fields in {
+        "effects": {"base": "64"},
+        "what_if": {"set": {"centre distance": "±9 um"}, "limits": {"normal backlash": "10 um.."}},
+        "changes": {"measure": "normal backlash"},
+        "allocate": {"bound": {"centre distance": "0.8..1.2"}},
+        "rare": {},
+        "methods": {"trials": "100"},
+        "sweep": {"vary": ["parts.pinion.teeth=17..25:2"]},
+    }.items():
+        assert pair.fit({**PAIR, "kind": kind, "fields": fields}) == {}, kind
+    assert pair.session(PAIR["scene"]).response.evaluations == before
 
 
 def test_a_what_if_begins_with_what_is_moved(pair: Questions) -> None:
@@ -126,6 +220,7 @@ def test_fields_are_arguments_as_commands_take_them() -> None:
         "ppk": 1.67,
         "stays": {"a": "low"},
     }
+    assert words_of("sweep", {"vary": ["a.b=1,2"], "trials": "1e3"}) == {"vary": ["a.b=1,2"], "trials": 1000}
 
 
 @pytest.mark.parametrize(

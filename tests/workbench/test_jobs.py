@@ -21,6 +21,7 @@ from tol3d.analyses import answers
 from tol3d.apps.workbench import job as job_module
 from tol3d.apps.workbench import jobs as jobs_module
 from tol3d.apps.workbench.answer import NAMES, keep_answer, kept_answer
+from tol3d.apps.workbench.asked_analysis import OF_STUDY
 from tol3d.apps.workbench.attempt import ANSWER, JOBS, Attempt, Order, Progress
 from tol3d.apps.workbench.jobs import Analysis, Jobs
 from tol3d.apps.workbench.place import APP, FolderLock
@@ -228,11 +229,33 @@ def test_an_answer_is_kept_as_the_analysis_gives_it(story: Story) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", get_args(Analysis))
 def test_each_answer_is_shown_again_as_it_was(kind: Analysis, tmp_path: Path) -> None:
-    asked = getattr(answers, kind)(SPUR_PAIR, **({"set": {"centre distance": "±10 um"}} if kind == "what_if" else {}))
+    words: dict[str, Any] = {
+        "what_if": {"set": {"centre distance": "±10 um"}},
+        "sweep": {"vary": ["parts.pinion.teeth=17,28"]},
+    }
+    asked = getattr(answers, kind)(SPUR_PAIR, **words.get(kind, {}))
     keep_answer(asked, tmp_path)
     kept = kept_answer(tmp_path / ANSWER, kind, "spur pair at the drive end")
     assert page_html(kept.page) == page_html(asked.page)
     assert len(kept.charts.rows) == len(asked.charts().rows) > 0
+
+
+def test_a_sweep_keeps_its_variants_where_the_command_does(tmp_path: Path) -> None:
+    jobs = Jobs(FolderLock(opened(tmp_path)))
+    asked = jobs.analyse(SCENE, "sweep", {"vary": ["parts.pinion.teeth=27,28"], "trials": 50})
+    until(lambda: not jobs.job(asked.id).goes_on)
+    assert (jobs.job(asked.id).state, jobs.job(asked.id).words) == ("done", "2 of 2 variants")
+    kept = kept_answer(jobs.answer(asked.id), "sweep", "spur pair at the drive end")
+    assert len(kept.page.tables[0].rows) == 2
+    again = answers.sweep(
+        SPUR_PAIR,
+        {"parts.pinion.teeth": "27,28"},
+        out=tmp_path / "runs" / "spur_pair-sweep",
+        overrides=Overrides(trials=50),
+    )
+    assert page_html(again.page) == page_html(kept.page)
+    assert jobs.numbers(asked.id).read_text("utf-8") == again.csv()
+    assert len([*(tmp_path / "runs" / "spur_pair-sweep").glob("variant-*")]) == 2
 
 
 def test_a_damaged_answer_is_refused(story: Story, tmp_path: Path) -> None:
@@ -274,15 +297,17 @@ def test_a_report_is_the_run_s_own(tmp_path: Path) -> None:
 
 def test_arguments_are_those_of_the_analyses_but_files_and_programs() -> None:
     others = {"subject", "activity", "warn", "trust_parts", "run_builders", "cost"}
+    others |= {"scene", "overrides", "workers", "out", "picture"}
     for kind in get_args(Analysis):
-        assert set(WORDS[kind]) == set(inspect.signature(getattr(answers, kind)).parameters) - others
+        study = {*OF_STUDY} if kind == "sweep" else set()
+        assert set(WORDS[kind]) == {*inspect.signature(getattr(answers, kind)).parameters} - others | study
     assert set(NAMES) == set(get_args(Analysis))
 
 
 @pytest.mark.parametrize(
     ("kind", "words", "message"),
     [
-        ("run", {}, "expected what_if, effects, changes, allocate, rare, got 'run'"),
+        ("run", {}, "expected what_if, effects, changes, allocate, rare, methods, sweep, got 'run'"),
         ("allocate", {"cost": "/etc/passwd"}, "allocate: expected ppm, ppk, measure, bounds, bound, freeze, stays"),
         ("effects", {"run_builders": True}, "effects: expected measure, base, seed, position, shapley, got 'run_bui"),
         ("effects", {"base": True}, "effects: base: expected a whole number from 2 on, got True"),

@@ -82,14 +82,13 @@ def test_a_run_of_some_trials_an_analysis_and_their_end(app: App, tmp_path: Path
     app.wait("#fields [data-field=base] .wrong", "expected a whole number from 2 on, got 'many'")
     app.told("base", "63")
     app.click("start", "#analyses")
-    app.wait("#analysis-state", "effects failed")
-    assert "power of two" in app.text("#analysis-state")
+    app.wait("#fields [data-field=base] .wrong", "expected a power of two")
     app.told("base", "64")
     app.click("start", "#analyses")
     page.wait("document.querySelector('#found').open")
     assert not page.ask("document.querySelector('#analyses').open")
     assert "sum of first indices" in app.text("#found-page")
-    numbers = (app.folder / JOBS / "0003" / "answer.csv").read_text("utf-8")
+    numbers = (app.folder / JOBS / "0002" / "answer.csv").read_text("utf-8")
     assert numbers.count("\n") > 10
     page.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(downloads))
     app.click("numbers as CSV")
@@ -98,6 +97,20 @@ def test_a_run_of_some_trials_an_analysis_and_their_end(app: App, tmp_path: Path
     for width in (1400, 390):
         page.call("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
         assert page.ask(WIDER) == [], width
+    app.click("close", "#found")
+    app.click("analyses…")
+    app.choose("#analysis", "sweep")
+    app.page.wait("document.querySelectorAll('#numbers option').length > 20")
+    assert page.ask(WIDER) == []
+    app.told("vary", "parts.pinion.teeth=20..28")
+    app.told("trials", "20")
+    app.click("start", "#analyses")
+    app.wait("#fields [data-field=vary] .wrong", "expected a step behind it")
+    app.told("vary", "parts.pinion.teeth=27,28")
+    app.click("start", "#analyses")
+    page.wait("document.querySelector('#found').open")
+    assert "2 variants of 20 trials" in app.text("#found-page")
+    assert app.text("#found-title") == "variants of pair.yaml"
     app.click("close", "#found")
     app.click("jobs (3)")
     app.wait("#made", "runs/pair: 50 trials")

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import starmap
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Generic, Literal, TypeVar
@@ -35,13 +36,13 @@ from tol3d.analyses.stated_classes import sizes_of
 from tol3d.analyses.stated_limits import limits_of_text
 from tol3d.analyses.stated_sizes import nominals_of
 from tol3d.analyses.subject import Subject, subject_of
-from tol3d.analyses.sweep_table import sweep_report, whole_table
+from tol3d.analyses.sweep_table import whole_table
 from tol3d.analyses.tolerance_effects import Effects
 from tol3d.analyses.tolerance_effects import effects as found_effects
 from tol3d.analyses.tolerance_search import Question
 from tol3d.analyses.variant_sweep import Order, Sweep, SweepQuestion
 from tol3d.analyses.variant_sweep import sweep as swept
-from tol3d.analyses.variants import variable
+from tol3d.analyses.variants import variable, variable_of
 from tol3d.analyses.what_to_change import AIM, Changes, ChangesQuestion, changes_of, contributions_of
 from tol3d.errors import InputError
 from tol3d.import_path import named
@@ -50,6 +51,7 @@ from tol3d.report.page import Page, Table
 from tol3d.report.printed import Picture, Report, stacked
 from tol3d.scene import Scene
 from tol3d.simulate import load
+from tol3d.study.execution.watch import Watch
 from tol3d.study.runs.run import Run
 from tol3d.study.runs.summary.judged import ACCEPTED_PPM, Accepted, AcceptedPpk
 from tol3d.study.runs.summary.values import Section
@@ -151,24 +153,14 @@ class OtherTolerances(Answer[Found]):
 
 
 @dataclass(frozen=True, repr=False)
-class Variants(Report):
-    """Result of a sweep over variants of a scene.
+class Variants(Answer[Sweep]):
+    """Result of a sweep over variants of a scene; its frame has a row per variant, with all numbers of all measures.
 
     Args:
-        found: their numbers.
         picture: of them; None if not requested.
     """
 
-    found: Sweep
-    picture: Picture | None
-
-    def csv(self) -> str:
-        """A row per variant, with all numbers of all measures."""
-        return whole_table(self.found).csv()
-
-    def frame(self) -> "DataFrame":
-        """A DataFrame of pandas, a row per variant, with all numbers of all measures."""
-        return stacked({"": whole_table(self.found)})
+    picture: Picture | None = None
 
 
 @dataclass
@@ -185,6 +177,26 @@ class _Progress:
     def between(self, done: int, builds: int) -> None:
         """Tell how many of the builds being evaluated are done."""
         self.tell(f"{self.text}, {done} of {builds} builds")
+
+
+@dataclass
+class _Variants:
+    """A progress callback of a sweep."""
+
+    tell: Activity
+    text: str = ""
+    trials: int = 0
+
+    def done(self, number: int, of: int, words: str) -> None:
+        """Tell how many variants are done."""
+        del words
+        self.text, self.trials = f"{number} of {of} variants", 0
+        self.tell(self.text)
+
+    def progress(self, trials: int) -> None:
+        """Tell how many trials of the next one are done."""
+        self.trials += trials
+        self.tell(f"{self.text}, {self.trials} trials of the next")
 
 
 @contextmanager
@@ -207,7 +219,7 @@ def _kept(
     subject: Subject, name: str, result: Found, numbers: Callable[[Page], Mapping[str, Table]]
 ) -> tuple[Page, Found, Callable[[], Mapping[str, Table]], Callable[[], Charts], Path | None]:
     """Arguments of every answer: page, numbers, functions that make tables and charts, and the run's file."""
-    page = page_of(name, result, subject.name, lambda: subject.simulation.system.contributors)
+    page = page_of(name, result, subject.name)
     charts = partial(charts_of, name, result, subject.name)
     return page, result, lambda: numbers(page), charts, subject.keep(name, result)
 
@@ -476,7 +488,7 @@ def allocate(
 
 def sweep(
     scene: Scene | Path | str,
-    vary: Mapping[str, str | Sequence[str | float]],
+    vary: Mapping[str, str | Sequence[str | float]] | Sequence[str],
     *,
     latin_hypercube: int | None = None,
     hypercube_seed: int = 1,
@@ -484,6 +496,7 @@ def sweep(
     picture: Path | str | None = None,
     overrides: Overrides = AS_WRITTEN,
     workers: int = 1,
+    activity: Activity = silent,
     trust_parts: bool = False,
     run_builders: bool = False,
 ) -> Variants:
@@ -491,24 +504,36 @@ def sweep(
 
     Args:
         scene: a scene, its path, or the name of a bundled one.
-        vary: values of fields, as a list or as text: "10um,20um", "17..25:2", "10um..30um".
+        vary: values of fields, as a list or as text: "10um,20um", "17..25:2", "10um..30um"; or texts FIELD=VALUES.
         latin_hypercube: number of variants drawn from ranges; None for a grid.
         hypercube_seed: of that draw.
         out: folder that keeps the variants, from which a sweep goes on; None keeps none.
         picture: file for a picture of them.
         overrides: values that replace those of the scene's study, for all variants.
         workers: number of processes for the trials of a variant.
+        activity: progress callback, called before the first variant too; an exception in it stops the sweep.
         trust_parts, run_builders: see run_scene.
 
     Raises:
         InputError: no such field, or values that it cannot have.
     """
-    question = SweepQuestion(tuple(variable(*field) for field in vary.items()), latin_hypercube, hypercube_seed)
+    variables = starmap(variable, vary.items()) if isinstance(vary, Mapping) else map(variable_of, vary)
+    question, told = SweepQuestion(tuple(variables), latin_hypercube, hypercube_seed), _Variants(activity)
     loaded = load(scene, trust_parts=trust_parts, run_builders=run_builders)
     with TemporaryDirectory(prefix="tol3d-") as temporary:
         folder = Path(temporary) if out is None else Path(out)
-        how = Order(folder, overrides, workers, trust_parts=trust_parts, run_builders=run_builders)
+        how = Order(
+            folder,
+            overrides,
+            workers,
+            trust_parts=trust_parts,
+            run_builders=run_builders,
+            watch=Watch(progress=told.progress),
+            done=told.done,
+        )
         result = swept(loaded, question, how)
+    shown = page_of("sweep", result, loaded.scene), result, lambda: {"": whole_table(result)}
+    charts = partial(charts_of, "sweep", result, loaded.scene)
     if picture is not None:
-        named("tol3d.analyses.sweep_picture:draw_sweep")(result, Path(picture))
-    return Variants(sweep_report(result), result, None if picture is None else Picture(Path(picture)))
+        named("tol3d.report.chart_figure:save_charts")(charts(), Path(picture))
+    return Variants(*shown, charts, whole=True, picture=None if picture is None else Picture(Path(picture)))

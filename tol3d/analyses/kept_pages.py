@@ -1,16 +1,14 @@
 """Sections that a run keeps, each as its command shows it: for reports."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, Final
 
 from tol3d.analyses.subject import KEPT, sections_of
 from tol3d.import_path import named
 from tol3d.report.chart import Charts
 from tol3d.report.page import Page
-from tol3d.simulate import simulation_again
 from tol3d.study.runs.run import Run
 from tol3d.study.runs.summary.values import Section
-from tol3d.study.system.contributor import Contributor
 
 BEST_CHANGE: Final = "tol3d.analyses.shown_changes:best_change"
 
@@ -22,11 +20,7 @@ def kept_pages(run: Run) -> Mapping[str, Page]:
         RunError: one was changed since it was made.
     """
     found = sections_of(run)
-    return {
-        own.title: page_of(name, found[name], run.found.scene, lambda: simulation_again(run).system.contributors)
-        for name, own in KEPT.items()
-        if name in found
-    }
+    return {own.title: page_of(name, found[name], run.found.scene) for name, own in KEPT.items() if name in found}
 
 
 def kept_charts(run: Run) -> Mapping[str, Charts]:
@@ -66,17 +60,15 @@ def _totals(own: Any) -> Mapping[str, float]:
     return {name: 100 * max(index.share, 0.0) for name, index in shown.items() if index is not None}
 
 
-def page_of(name: str, found: Section, scene: str, contributors: Callable[[], Sequence[Contributor]]) -> Page:
+def page_of(name: str, found: Section, scene: str) -> Page:
     """The page of an analysis.
 
     Args:
         name: of the analysis.
         found: its result.
         scene: name of the scene.
-        contributors: of the scene, made where a page asks for them.
     """
-    report: Any = named(KEPT[name].report)
-    page: Page = report(found, contributors()) if name == "methods" else report(*_with_scene(scene, found))
+    page: Page = named(KEPT[name].report)(*_with_scene(scene, found))
     return page
 
 

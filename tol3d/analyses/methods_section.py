@@ -92,5 +92,6 @@ class Methods(MethodSection):
     """Methods side by side."""
 
     scene: Label
+    contributors: Mapping[Label, Label] = Field(description="units of all, in which builds have their deviations")
     measures: Mapping[Label, MeasureMethods]
     evaluations: Count

@@ -3,7 +3,7 @@
 Methods side by side as charts: the intervals by method over each measure's limits.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Final
 
@@ -16,7 +16,6 @@ from tol3d.report.measure_charts import spanned
 from tol3d.report.number import UNIT_SIGNS, limit_text, measured_text, number_text, short_text
 from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, titled, warning
 from tol3d.study.runs.summary.shows import Computed, Shows
-from tol3d.study.system.contributor import Contributor
 
 MOST_SHOWN: Final = 12
 """Contributors of a worst build."""
@@ -30,20 +29,15 @@ WORDS: Final = (
 )
 
 
-def methods_report(found: Methods, contributors: Sequence[Contributor]) -> Page:
-    """A table a measure.
-
-    Args:
-        found: by all methods.
-        contributors: of the scene.
-    """
+def methods_report(found: Methods) -> Page:
+    """A table a measure."""
     method = "analytic" if found.method == "analytic" else "3D simulation"
     blocks: list[PageItem] = [Line(((found.scene, "bold"), (f" · methods side by side, {method}", "")))]
     for name, own in found.measures.items():
         blocks += titled(f"{name}: {_limits(own)}", intervals_table(own))
         blocks += _told(own)
         if own.worst is not None:
-            blocks += _builds(own, contributors)
+            blocks += _builds(own, found.contributors)
     return page(*blocks, BLANK, note(WORDS), note(f"builds that were evaluated: {found.evaluations}"))
 
 
@@ -158,7 +152,7 @@ def _told(measure_methods: MeasureMethods) -> Iterator[PageItem]:
 REJECTED: Final = 0.05
 
 
-def _builds(measure_methods: MeasureMethods, contributors: Sequence[Contributor]) -> Iterator[PageItem]:
+def _builds(measure_methods: MeasureMethods, units: Mapping[str, str]) -> Iterator[PageItem]:
     """The deviations of the worst builds, those that differ first."""
     assert measure_methods.worst is not None
     builds = {
@@ -171,12 +165,10 @@ def _builds(measure_methods: MeasureMethods, contributors: Sequence[Contributor]
     if not builds:
         return
     rows = []
-    for contributor in contributors:
-        if any(contributor.name in build.deviations for build in builds.values()):
-            deviations = {
-                f"{word}: {build.status}": _deviations(build, contributor.name) for word, build in builds.items()
-            }
-            rows.append((contributor.name, DeviationRow(deviations, UNIT_SIGNS[contributor.unit])))
+    for name, unit in units.items():
+        if any(name in build.deviations for build in builds.values()):
+            deviations = {f"{word}: {build.status}": _deviations(build, name) for word, build in builds.items()}
+            rows.append((name, DeviationRow(deviations, UNIT_SIGNS[unit])))
     yield declared_table("worst found", rows).shortened(MOST_SHOWN)
     yield note(f"by {measure_methods.worst.evaluations} builds")
 

@@ -199,6 +199,7 @@ def methods(
         Methods,
         scene=response.simulation.system.name,
         method="analytic" if response.method is None else "geometric",
+        contributors={own.name: own.unit for own in response.contributors},
         measures=by_measure,
         evaluations=response.evaluations - before,
     )

@@ -29,7 +29,7 @@ FOLDER: Final = "analyses"
 
 @dataclass(frozen=True)
 class Kept:
-    """An analysis whose result a run keeps; what makes and shows it as import paths.
+    """An analysis whose result a run or a job keeps; what makes and shows it as import paths.
 
     Args:
         title: of it in reports.
@@ -81,8 +81,14 @@ KEPT: Final[Mapping[str, Kept]] = {
         "tol3d.analyses.allocate_table:allocation_report",
         "tol3d.analyses.allocate_charts:allocation_charts",
     ),
+    "sweep": Kept(
+        "variants",
+        "tol3d.analyses.variant_sweep:Sweep",
+        "tol3d.analyses.sweep_table:sweep_report",
+        "tol3d.analyses.sweep_charts:sweep_charts",
+    ),
 }
-"""Analyses by the names of their files, in the order of reports. Each is loaded where a run keeps it."""
+"""Analyses by the names of their files, in the order of reports. Each is loaded where it is kept: a sweep by a job."""
 
 
 @dataclass(frozen=True, eq=False)

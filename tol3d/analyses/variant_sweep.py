@@ -106,7 +106,7 @@ class Order:
         workers: that run the trials of one.
         trust_parts, run_builders: see `tol3d.run_scene`.
         watch: callbacks while one runs.
-        done: callback after each variant: its number, the number of all, and its values.
+        done: callback before the first and after each variant: the number done, the number of all, and values.
     """
 
     out: Path
@@ -133,6 +133,7 @@ def sweep(scene: Scene, question: SweepQuestion, order: Order) -> Sweep:
     study = asked_study(scene, order.overrides)
     _refuse_all(scene, points[0], order.out)
     variants = []
+    order.done(0, len(points), words_of(points[0]))
     for k, point in enumerate(points):
         variants.append(_variant(scene, point, order))
         order.done(k + 1, len(points), words_of(point))

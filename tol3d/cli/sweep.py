@@ -48,6 +48,7 @@ def sweep(
 ) -> None:
     """Simulate variants of a scene: numbers that take several values, on a grid or a Latin hypercube."""
     from tol3d.analyses.subject import text_of_section
+    from tol3d.analyses.sweep_charts import sweep_charts
     from tol3d.analyses.sweep_table import sweep_report, whole_table
     from tol3d.analyses.variant_sweep import NAME, Order, SweepQuestion, write_text
     from tol3d.analyses.variant_sweep import sweep as swept
@@ -72,7 +73,8 @@ def sweep(
     tell(f"variants: {folder}    all of them: {folder / NAME}")
     if csv is not None:
         write_numbers(csv, whole_table(found).csv())
-    draw_picture(picture, "tol3d.analyses.sweep_picture:draw_sweep", found)
+    if picture is not None:
+        draw_picture(picture, "tol3d.report.chart_figure:save_charts", sweep_charts(found))
 
 
 @contextmanager

@@ -117,7 +117,9 @@ def unexplained_words(measure: MeasureSummary) -> str:
 
 
 def shares_by_words(measures: Iterable[MeasureSummary]) -> Iterator[str]:
-    """A sentence where some shares are not those of the regression; nothing if all are."""
+    """Sentences where some shares are not those of the regression, or are within their sampling error; else none."""
+    measures = list(measures)
+    yield from dict.fromkeys(words for own in measures if (words := within_error_words(own)))
     used = {own.by for measure in measures for own in (measure.shares_by or {}).values()}
     meanings = [SHARES_BY_MEANS[by] for by in SHARES_BY_MEANS if by in used]
     if meanings:
@@ -141,13 +143,96 @@ def contributor_columns(measure: MeasureSummary) -> list[Column]:
     return [*ours, *([alone] if known else []), *columns[len(ours) :], *others]
 
 
-def ranked_contributors(measure: MeasureSummary) -> list[str]:
-    """Contributors by falling share: the 3D simulation's, or the analytic one."""
-    names = [contributor.name for contributor in measure.contributors]
+SURE: Final = 2.0
+"""Standard errors from which on a share is told from none: one of none has as much in 5 of 100 studies."""
+TOLD: Final = 1.0
+"""Share [%] that may be within its sampling error, from which on a sentence tells of it."""
+
+
+@dataclass(frozen=True)
+class Share:
+    """Share of contributors in the variance of a measure, as it is ranked and told.
+
+    Args:
+        percent: of the variance, the 3D simulation's, or the analytic one.
+        error: its standard error [%], of a sample of trials; 0 where there is none.
+        alone: without chance [%], by high–low–mean or a closed form; None where it is not known.
+    """
+
+    percent: float
+    error: float
+    alone: float | None
+
+    @classmethod
+    def together(cls, shares: Iterable["Share"]) -> "Share":
+        """That of several contributors, whose errors are independent."""
+        every = list(shares)
+        alone = [own.alone for own in every if own.alone is not None]
+        return cls(
+            sum(own.percent for own in every),
+            math.hypot(*(own.error for own in every)),
+            sum(alone) if len(alone) == len(every) else None,
+        )
+
+    @property
+    def is_within_error(self) -> bool:
+        """True if chance may have made it."""
+        return self.error > 0.0 and self.percent < SURE * self.error
+
+    @property
+    def most(self) -> float:
+        """Upper end of its 95 % interval [%]."""
+        return min(max(self.percent, 0.0) + SURE * self.error, 100.0)
+
+    @property
+    def order(self) -> tuple[bool, float]:
+        """Key of its rank: by itself, or within its error below the others, by the effects alone if they are known."""
+        known = self.percent if self.alone is None or not self.is_within_error else self.alone
+        return self.is_within_error, -known
+
+
+def shares_by_contributor(measure: MeasureSummary) -> dict[str, Share]:
+    """The leading shares of a measure, by falling rank; none where none are known."""
     leading = leading_shares(measure)
     if leading is None:
-        return names
-    return sorted(names, key=lambda name: -(leading.percents.get(name) or 0.0))
+        return {}
+    sampled, (_, alone) = leading.method == "geometric", _without_chance(measure)
+    found = {
+        own.name: Share(
+            leading.percents.get(own.name) or 0.0,
+            (own.geometric_percent_se or 0.0) if sampled else 0.0,
+            alone.get(own.name),
+        )
+        for own in measure.contributors
+    }
+    return dict(sorted(found.items(), key=lambda own: own[1].order))
+
+
+def _without_chance(measure: MeasureSummary) -> tuple[str, Mapping[str, float | None]]:
+    """Shares in which no chance is [%], if those of all contributors are known, with the name of their method."""
+    columns = {"high–low–mean": "high_low_mean_percent"}
+    if measure.analytic_closed_form is not None:
+        columns["the closed form"] = "analytic_percent"
+    for words, key in columns.items():
+        found = _percents(measure, key)
+        if None not in found.values():
+            return words, found
+    return "", {}
+
+
+def within_error_words(measure: MeasureSummary) -> str:
+    """A sentence where shares that may matter are within their sampling error; "" where trials tell."""
+    found = [own for own in shares_by_contributor(measure).values() if own.is_within_error]
+    if not any(own.most > TOLD for own in found):
+        return ""
+    words, _ = _without_chance(measure)
+    by = f", in the order of {words}" if words else ""
+    return f"shares of less than {SURE:g} standard errors may be chance in so few trials: they stand last{by}"
+
+
+def ranked_contributors(measure: MeasureSummary) -> list[str]:
+    """Contributors by falling share; see `Share.order`."""
+    return list(shares_by_contributor(measure)) or [contributor.name for contributor in measure.contributors]
 
 
 def _percents(measure: MeasureSummary, key: str | None) -> dict[str, float | None]:

@@ -6,7 +6,7 @@ the scene.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from tol3d.errors import InputError
@@ -50,6 +50,21 @@ def known_path(scene: Scene, field: str) -> KeyPath:
         InputError: see field_path.
     """
     return field_path(_values(scene, scene.text or dumped(scene)), field)
+
+
+def numbers_of(scene: Scene) -> Mapping[str, str]:
+    """Numbers of a scene's parts, tolerances, moves and measures, as they are written, by their fields."""
+    values = _values(scene, scene.text or dumped(scene))
+    return {path_text(path): str(own) for section in SECTIONS for path, own in _leaves(values.get(section), (section,))}
+
+
+def _leaves(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, Any]]:
+    """Numbers inside a value, with their keys."""
+    items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
+    for key, own in items:
+        yield from _leaves(own, (*path, key))
+    if _is_number(value) and not isinstance(value, bool):
+        yield path, value
 
 
 def _values(scene: Scene, text: str) -> Any:

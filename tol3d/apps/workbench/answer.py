@@ -22,6 +22,8 @@ NAMES: Final = {
     "changes": "changes",
     "allocate": "allocation",
     "rare": "rare",
+    "methods": "methods",
+    "sweep": "sweep",
 }
 """Names of analyses, as runs keep them, by their functions."""
 
@@ -72,4 +74,4 @@ def kept_answer(path: Path, kind: str, scene: str) -> KeptAnswer:
         raise RunError(f"{path}: cannot be read ({error}); ask for it again") from None
     name = NAMES[kind]
     found = section_of(name, content, path)
-    return KeptAnswer(page_of(name, found, scene, tuple), charts_of(name, found, scene))
+    return KeptAnswer(page_of(name, found, scene), charts_of(name, found, scene))

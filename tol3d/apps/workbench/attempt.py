@@ -13,7 +13,7 @@ Attempts are numbered as they were started, and take turns in that order. Files 
 import json
 import re
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -23,6 +23,7 @@ from filelock import FileLock, Timeout
 from pydantic import AfterValidator, TypeAdapter, ValidationError
 
 from tol3d.apps.workbench.place import APP, inside, lock_in
+from tol3d.apps.workbench.words import Words
 from tol3d.errors import InputError, unwritable
 from tol3d.files import UnreadableFileError, read_contained
 from tol3d.study.runs import write_whole
@@ -39,10 +40,9 @@ LARGEST: Final = 1_000_000  # bytes of an order or a progress
 PROBE_S: Final = 0.02  # s; others hold a lock for less than this when they look whether it is held
 STARTS_WITHIN: Final = 10.0  # s; a process that has not begun to live by then will not
 
-Kind = Literal["run", "what_if", "effects", "changes", "allocate", "rare", "report"]
+Kind = Literal["run", "what_if", "effects", "changes", "allocate", "rare", "methods", "sweep", "report"]
 Said = Literal["waiting", "running", "cancelled", "failed", "done"]
 Version = Literal[1]
-Words = Mapping[str, str | int | float | bool | list[str] | dict[str, str | int | float]]
 
 T = TypeVar("T")
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.limit_state import Side
-from tol3d.analyses.response import Response
 from tol3d.analyses.scope import Scope
 from tol3d.analyses.stated_changes import told
 from tol3d.analyses.stated_classes import class_words, is_class, neighbours
@@ -21,7 +20,7 @@ from tol3d.apps.workbench.workspace import WhatIf
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.chart import Axis, Chart, Filled, Outline, Panel, Series
-from tol3d.report.column import unexplained_words
+from tol3d.report.column import TOLD, Share, shares_by_contributor, unexplained_words, within_error_words
 from tol3d.report.html.blocks import Inside, Markup, tag, together
 from tol3d.report.html.frame import NARROW
 from tol3d.report.html.svg import heard, svg
@@ -234,27 +233,23 @@ def sliders(session: Session, measure: str, now: WhatIf, summary: MeasureSummary
         now: what is moved.
         summary: of a run of the scene, which knows shares; None until there is one.
     """
-    shares = _shares(session.response, summary) if summary is not None else {}
-    lines = sorted(session.acting(measure), key=lambda line: -shares.get(line, 0.0))
+    lines, shares = session.acting(measure), dict[str, Share]()
+    if summary is not None:
+        known, none = shares_by_contributor(summary), Share(0.0, 0.0, 0.0)
+        shares = {line: Share.together(known.get(own, none) for own in session.response.lines[line]) for line in lines}
+        lines = tuple(sorted(lines, key=lambda line: shares[line].order))
     if not lines:
         return tag(
             "p", session.response.nothing_acts(session.measure(measure)) or "no tolerance acts on it", class_="note"
         )
-    words = unexplained_words(summary) if summary is not None else ""
-    first = [tag("p", words, class_="warning")] if words else []
+    words = [unexplained_words(summary), within_error_words(summary)] if summary is not None else []
+    first = [tag("p", own, class_="warning") for own in words if own]
     return together(
         *first, tag("ul", *(_slider(session, line, now, shares.get(line)) for line in lines), class_="sliders")
     )
 
 
-def _shares(response: Response, summary: MeasureSummary) -> Mapping[str, float]:
-    """Share of the variance by line of the scene [%], by the method that the verdict states."""
-    key = f"{summary.best_method}_percent"
-    known = {own.name: own[key] or 0.0 for own in summary.contributors}
-    return {line: sum(known.get(name, 0.0) for name in names) for line, names in response.lines.items()}
-
-
-def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Markup:
+def _slider(session: Session, line: str, now: WhatIf, share: Share | None) -> Markup:
     response = session.response
     names = response.lines[line]
     contributor = next(own for own in response.contributors if own.name == names[0])
@@ -276,7 +271,8 @@ def _slider(session: Session, line: str, now: WhatIf, share: float | None) -> Ma
         "-".join(("classes", "of", *line.split())),
     )
     if share is not None:
-        words.append(tag("span", f"{percent_text(share)} %", class_="share"))
+        text = f"< {share.most:.2g}" if share.is_within_error and share.most > TOLD else percent_text(share.percent)
+        words.append(tag("span", f"{text} %", class_="share"))
     ends = _ends(scope)
     inside = list[Inside]([tag("div", tag("b", line), *words, class_="head")])
     if ends is None:

@@ -7,7 +7,7 @@ from typing import Final
 from tol3d.analyses.response import Response
 from tol3d.analyses.stated_changes import told
 from tol3d.apps.workbench.session import LIMITS
-from tol3d.apps.workbench.words import TEXTS, VALUES, WORDS, YES_NO, Argument
+from tol3d.apps.workbench.words import TEXTS, VALUES, VARIED, WORDS, YES_NO, Argument
 from tol3d.report.html.blocks import Markup, tag, together
 
 ANALYSES: Final[Mapping[str, tuple[str, str]]] = {
@@ -22,6 +22,11 @@ ANALYSES: Final[Mapping[str, tuple[str, str]]] = {
     "changes": ("what to change", "Measures that are NOT OK: which nominal to move, which tolerance to halve."),
     "allocate": ("allocate", "Tolerances of least cost for a fraction out of limits, confirmed by simulation."),
     "rare": ("rare events", "Builds out of limits that are too rare for trials, and the most likely one of them."),
+    "methods": ("methods side by side", "Worst case, RSS, modified RSS and simulation of each measure side by side."),
+    "sweep": (
+        "variants",
+        "Numbers of the scene that take several values; each variant is simulated with the same draws.",
+    ),
 }
 """Titles and subjects by kind, in the order in which the page offers them."""
 BY_LINE: Final[Mapping[str, tuple[str, ...]]] = {"what_if": ("set",), "allocate": ("freeze", "bound", "stays")}
@@ -29,6 +34,7 @@ BY_LINE: Final[Mapping[str, tuple[str, ...]]] = {"what_if": ("set",), "allocate"
 BY_MEASURE: Final[Mapping[str, tuple[str, ...]]] = {"what_if": ("limits",)}
 """Arguments with a value for each measure."""
 SIDES: Final = ("low", "high")
+VARIED_EXAMPLES: Final = ("choose a number, then its values", "another one", "another one")
 PLACEHOLDERS: Final = {"set": "±33 µm, H7 or x1.5", "bound": "0.8..1.2", "limits": "10 µm..40 µm"}
 
 
@@ -40,11 +46,13 @@ class FormScene:
         measures: their names.
         lines: of its tolerances, with their words.
         moved: tolerances and limits that are moved on the page, as `--set` and `--limits` take them, by their keys.
+        numbers: of the scene by their fields, which a sweep can vary.
     """
 
     measures: Sequence[str]
     lines: Mapping[str, str]
     moved: Mapping[str, str]
+    numbers: Mapping[str, str]
 
 
 def line_words(response: Response, line: str) -> str:
@@ -58,7 +66,7 @@ def form(kind: str, scene: FormScene) -> Markup:
     """Fields of an analysis."""
     _, subject = ANALYSES[kind]
     tabled = (*BY_LINE.get(kind, ()), *BY_MEASURE.get(kind, ()), "factor")
-    fields = [_field(name, own, scene.measures) for name, own in WORDS[kind].items() if name not in tabled]
+    fields = [_field(name, own, scene) for name, own in WORDS[kind].items() if name not in tabled]
     by_line, by_measure = ({name: WORDS[kind][name] for name in names.get(kind, ())} for names in (BY_LINE, BY_MEASURE))
     if kind == "what_if":
         limits = {key.removeprefix(LIMITS): own for key, own in scene.moved.items() if key.startswith(LIMITS)}
@@ -70,16 +78,18 @@ def form(kind: str, scene: FormScene) -> Markup:
     return together(tag("p", subject), *fields)
 
 
-def _field(name: str, argument: Argument, measures: Sequence[str]) -> Markup:
+def _field(name: str, argument: Argument, scene: FormScene) -> Markup:
     """A control with its label; what is left empty has the argument's default."""
     label, default, word = argument.label, argument.default, argument.word
     about: Mapping[str, object] = {"data_argument": name}
     if name == "measure" and word is TEXTS:
-        boxes = (_box(f"{measure}", {**about, "data_item": measure}) for measure in measures)
+        boxes = (_box(f"{measure}", {**about, "data_item": measure}) for measure in scene.measures)
         return tag("fieldset", tag("legend", f"{label}: {default}, or"), *boxes, data_field=name)
     if name == "measure":
-        every = (tag("option", own, value=own) for own in measures)
+        every = (tag("option", own, value=own) for own in scene.measures)
         control = tag("select", tag("option", default, value=""), *every, **about)
+    elif word is VARIED:
+        return _varied(label, about, scene.numbers)
     elif word is YES_NO:
         return tag("div", _box(label, about), data_field=name)
     elif word.choices:
@@ -87,6 +97,21 @@ def _field(name: str, argument: Argument, measures: Sequence[str]) -> Markup:
     else:
         control = tag("input", type="text", placeholder=default, **about)
     return tag("div", tag("label", label, " ", control), data_field=name)
+
+
+def _varied(label: str, about: Mapping[str, object], numbers: Mapping[str, str]) -> Markup:
+    """Fields FIELD=VALUES, with the scene's numbers to choose from."""
+    offered = (tag("option", f"now {now}", value=f"{field}=") for field, now in numbers.items())
+    about = {**about, "type": "text", "list": "numbers", "data_each": "", "class_": "long"}
+    texts = (
+        tag("input", placeholder=own, aria_label=f"{label}, {k}", **about) for k, own in enumerate(VARIED_EXAMPLES, 1)
+    )
+    words = tag(
+        "p", "values: 10um,20um · from 17 to 25 in twos: 17..25:2 · a range to draw from: 10um..30um", class_="note"
+    )
+    return tag(
+        "fieldset", tag("legend", label), *texts, tag("datalist", *offered, id="numbers"), words, data_field="vary"
+    )
 
 
 def _choices(choices: Sequence[str], default: str) -> Iterator[Markup]:

@@ -30,7 +30,6 @@ from tol3d.apps.workbench.attempt import (
     Kind,
     Order,
     Progress,
-    Words,
     attempts,
     is_name,
 )
@@ -38,7 +37,7 @@ from tol3d.apps.workbench.job import TRUSTED
 from tol3d.apps.workbench.monitor import PATIENCE_S
 from tol3d.apps.workbench.place import FolderLock, inside
 from tol3d.apps.workbench.standing import Job, LastAttempt
-from tol3d.apps.workbench.words import refuse_unfit
+from tol3d.apps.workbench.words import Words, refuse_unfit
 from tol3d.errors import InputError, unwritable
 from tol3d.files import read_file
 from tol3d.study.runs import made_folder
@@ -49,7 +48,7 @@ LOOK_S: Final = 0.02  # s
 MOST_ENDED: Final = 50
 """Jobs that have ended and are kept; older ones are dropped as an app starts."""
 
-Analysis = Literal["what_if", "effects", "changes", "allocate", "rare"]
+Analysis = Literal["what_if", "effects", "changes", "allocate", "rare", "methods", "sweep"]
 
 
 class Jobs:

@@ -15,6 +15,8 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from tol3d.analyses.kept_changes import scene_with
+from tol3d.analyses.subject import Subject
+from tol3d.apps.workbench.asked_analysis import refusal
 from tol3d.apps.workbench.builds import FACTORS, Known, Row, Stage, positions_at, turnable
 from tol3d.apps.workbench.card import answer, histogram, limit_fields, result, sliders, written_words
 from tol3d.apps.workbench.flags import flags
@@ -24,9 +26,11 @@ from tol3d.apps.workbench.round_numbers import in_round_numbers
 from tol3d.apps.workbench.session import AT_ONCE, FEW, NoEstimate, Session, Turn
 from tol3d.apps.workbench.text_check import checked
 from tol3d.apps.workbench.tree import parts_of, tree
+from tol3d.apps.workbench.words import UnfitError, words_of
 from tol3d.apps.workbench.workspace import MOST_KEPT, MOST_UNDONE, Notes, Told, Workspace, digest, written
 from tol3d.errors import InputError
 from tol3d.report.html.blocks import tag
+from tol3d.scene.vary import numbers_of
 from tol3d.simulate import Overrides, run_scene
 from tol3d.study.runs.run import Run
 
@@ -242,8 +246,24 @@ class Questions:
         kind = str(asked["kind"])
         if kind not in ANALYSES:
             raise InputError(f"expected {', '.join(ANALYSES)}, got {kind!r}")
-        fields = form(kind, FormScene(measures, lines, written_words(session, now)))
+        numbers = numbers_of(session.scene) if kind == "sweep" else {}
+        fields = form(kind, FormScene(measures, lines, written_words(session, now), numbers))
         return {"form": fields, "kinds": {key: title for key, (title, _) in ANALYSES.items()}}
+
+    def fit(self, asked: Told) -> Told:
+        """The field of an analysis that its command refuses, with its words; nothing where it begins."""
+        session, kind = self.session(str(asked["scene"])), str(asked["kind"])
+        if not self._is_looked_at(session):
+            return {"waits": True}
+        if kind not in ANALYSES:
+            raise InputError(f"expected {', '.join(ANALYSES)}, got {kind!r}")
+        try:
+            words = words_of(kind, dict(asked.get("fields") or {}))
+        except UnfitError:
+            return {}  # the folder's question says it
+        subject = session.scene if kind == "sweep" else Subject(session.simulation, loaded=session.scene)
+        refused = refusal(kind, subject, words)
+        return {} if refused is None else {"refused": refused}
 
     def notes(self, asked: Told) -> Told:
         """Keep what is moved beside the scene, so that it is there after a reload."""

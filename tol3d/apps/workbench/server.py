@@ -28,17 +28,7 @@ if TYPE_CHECKING:
 
 QUESTIONS: Final = "tol3d.apps.workbench.questions"  # loads analyses and scipy: seconds
 OF_SCENES: Final = (
-    "scene",
-    "card",
-    "estimate",
-    "rounded",
-    "sliders",
-    "notes",
-    "check",
-    "keep",
-    "save",
-    "view",
-    "forms",
+    *("scene", "card", "estimate", "rounded", "sliders", "notes", "check", "keep", "save", "view", "forms", "fit"),
 )
 OF_FOLDER: Final = (
     *("folder", "changed", "jobs", "start", "analyse", "cancel", "resume", "delete"),

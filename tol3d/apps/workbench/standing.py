@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from tol3d.apps.workbench.attempt import RUNS, Attempt, Kind, Order, Progress, Words
+from tol3d.apps.workbench.attempt import RUNS, Attempt, Kind, Order, Progress
+from tol3d.apps.workbench.words import Words
 
 State = Literal["waiting", "running", "cancelled", "interrupted", "failed", "done"]
 

@@ -2,13 +2,17 @@
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Any, Final
 
 from tol3d.errors import InputError
 
-OPTION: Final = re.compile(r"^--([a-z-]+)(?: '.*?')?: ")
+Value = str | int | float | bool | list[str] | dict[str, str | int | float]
+Words = Mapping[str, Value]
+"""Arguments by name."""
+
+OPTION: Final = re.compile(r"^--([a-z-]+)(?: '.*?'| \(.*?\))?: ")
 """Front of a refusal on a command line, whose options a page does not have; it has fields of these names."""
 
 
@@ -95,6 +99,7 @@ YES_NO: Final = Word("true or false", lambda value: isinstance(value, bool))
 TEXTS: Final = Word(
     "a list of texts", lambda value: isinstance(value, list) and all(isinstance(own, str) for own in value)
 )
+VARIED: Final = replace(TEXTS, expected="a list of texts FIELD=VALUES")
 VALUES: Final = Word(
     "texts or numbers by name",
     lambda value: isinstance(value, dict) and all(isinstance(name, str) and _is_value(value[name]) for name in value),
@@ -143,6 +148,18 @@ WORDS: Final[Mapping[str, Mapping[str, Argument]]] = {
         "method": Argument(_one_of("auto", "importance", "subset", "form", "sorm"), "method", "auto"),
         "draws": Argument(DRAWS, "draws for each limit", "4800, or 14000 a level of subset"),
         "seed": Argument(SEED, "seed", "1"),
+    },
+    "methods": {
+        "measure": Argument(TEXT, "measure", "all"),
+        "trials": Argument(_whole(2), "trials", "the study's, 20000 at most"),
+    },
+    "sweep": {
+        "vary": Argument(VARIED, "field and its values"),
+        "latin_hypercube": Argument(_whole(2), "variants drawn from ranges", "all values of a grid"),
+        "hypercube_seed": Argument(SEED, "seed of that drawing", "1"),
+        "trials": Argument(_whole(1), "trials of each variant", "the study's"),
+        "seed": Argument(SEED, "seed", "the study's"),
+        "engine": Argument(TEXT, "engine", "the study's"),
     },
 }
 """By the kind of job, as in `tol3d.analyses.answers`, whose defaults hold where nothing is given."""
@@ -194,6 +211,8 @@ def words_of(kind: str, fields: Mapping[str, object]) -> dict[str, Any]:
         factors = {name: _number(own[1:]) for name, own in values.items() if str(own).startswith("x")}
         sizes = {name: own for name, own in values.items() if name not in factors}
         found |= {key: own for key, own in (("set", sizes), ("factor", factors)) if own}
+    if kind == "sweep":
+        found.setdefault("vary", [])
     refuse_unfit(kind, found)
     if kind == "what_if" and not found.keys() & {"set", "factor", "limits"}:
         sentence = "expected a new value of a tolerance or other limits of a measure, got none"

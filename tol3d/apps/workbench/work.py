@@ -13,7 +13,7 @@ from tol3d.simulate import Execution, Overrides, Watch, folder_for, load, run_si
 from tol3d.study.runs.occupant import partial_of
 from tol3d.study.runs.run import open_run
 
-ANALYSES: Final = "tol3d.analyses.answers"
+ASK: Final = "tol3d.apps.workbench.asked_analysis:ask"
 KEEP_ANSWER: Final = "tol3d.apps.workbench.answer:keep_answer"
 KEEP_REPORT: Final = "tol3d.notebook:keep_report"
 
@@ -45,7 +45,8 @@ def work(attempt: Attempt, order: Order, monitor: Monitor, trusted: Mapping[str,
         named(KEEP_REPORT)(open_run(inside(attempt.folder / RUNS / order.run, attempt.folder)))
     else:
         scene = inside(attempt.folder / order.scene, attempt.folder)
-        answer = named(f"{ANALYSES}:{order.kind}")(scene, **order.words, activity=tell, **trusted)
+        out = inside(attempt.folder / RUNS / f"{scene.stem}-sweep", attempt.folder)  # as `tol3d sweep` has it
+        answer = named(ASK)(order.kind, scene, order.words, tell, out=out, **trusted)
         named(KEEP_ANSWER)(answer, attempt.place)
         return "; ".join(answer.warnings)
     return ""

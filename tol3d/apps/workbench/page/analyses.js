@@ -23,22 +23,26 @@ function note(kind) {
 function given() {
   const fields = Object.create(null);
   for (const own of document.querySelectorAll("#fields [data-argument]")) {
-    const { argument, item, of } = own.dataset, text = own.value.trim();
+    const { argument, item, of, each } = own.dataset, text = own.value.trim();
     if (item !== undefined) {
       if (own.checked) (fields[argument] ??= []).push(item);
     } else if (of !== undefined) {
       if (text) (fields[argument] ??= Object.create(null))[of] = text;
+    } else if (each !== undefined) {
+      if (text) (fields[argument] ??= []).push(text);
     } else fields[argument] = own.type === "checkbox" ? own.checked : text;
   }
   return fields;
 }
 
-function refuse({ argument, message }) {
-  const words = document.createElement("p");
+function refuse({ argument, of, message }) {
+  const words = document.createElement("p"), name = argument === "factor" ? "set" : argument;
   Object.assign(words, { className: "wrong", role: "alert", textContent: message });
-  const field = [...document.querySelectorAll("#fields [data-field]")].find((own) => own.dataset.field === argument);
-  (field ?? $("fields")).append(words);
-  field?.querySelector("input, select")?.focus();
+  const all = [...document.querySelectorAll("#fields [data-argument]")].filter((own) => own.dataset.argument === name);
+  const own = all.find(({ dataset, value }) => of && [dataset.of, dataset.item, value.trim()].includes(of)) ?? all[0];
+  if (own?.closest("details")) own.closest("details").open = true;
+  (own?.closest("td, [data-field]") ?? $("fields")).append(words);
+  own?.focus();
 }
 
 $("analyses-button").addEventListener("click", async () => {
@@ -56,7 +60,12 @@ $("analysis-form").addEventListener("submit", async (event) => {
   event.preventDefault();
   for (const own of document.querySelectorAll("#fields .wrong")) own.remove();
   try {
-    const found = await ask("analyse", { kind: $("analysis").value, fields: given() });
+    const asked = { kind: $("analysis").value, fields: given() };
+    $("analysis-state").textContent = "checking …";
+    let found;
+    do found = await ask("fit", asked); while (found.waits);
+    $("analysis-state").replaceChildren();
+    if (!found.refused) found = await ask("analyse", asked);
     if (found.refused) refuse(found.refused);
     else await watch(found.id);
   } catch (error) {

@@ -2,7 +2,7 @@
 import { $, app, ask, button, trouble } from "./ask.js";
 
 const STOPPED = ["cancelled", "interrupted", "failed"], LONGEST = 40; // signs of a message in the header, a line of it
-const KINDS = { what_if: "what if", changes: "what to change", rare: "rare events" };
+const KINDS = { what_if: "what if", changes: "what to change", rare: "rare events", methods: "methods side by side", sweep: "variants" };
 const links = new Map(); // addresses of reports that are made, each opens once
 let watched = ""; // the analysis that was asked in the open dialog
 

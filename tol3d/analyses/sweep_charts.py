@@ -1,17 +1,13 @@
-"""The picture of a sweep: of one field curves with their bands, of two over a grid heat maps, of more a row of each."""
+"""Charts of a sweep: of one field curves with their bands, of two over a grid heat maps, of more a row of each."""
 
-from pathlib import Path
 from typing import Final
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from tol3d.analyses.sweep_table import short_names
 from tol3d.analyses.variant_sweep import Sweep, measures_of
 from tol3d.numerics.arrays import Array
-from tol3d.report.canvas import save_figure
-from tol3d.report.chart import Axis, Band, Chart, Field, Line, Mark, Panel, Points, Series
-from tol3d.report.chart_figure import charts_figure
+from tol3d.report.chart import Axis, Band, Chart, Charts, Field, Line, Mark, Panel, Points, Series
 from tol3d.report.measure_charts import spanned
 from tol3d.report.number import UNIT_SIGNS
 
@@ -20,17 +16,8 @@ MOST_FIELDS: Final = 6
 WIDTH: Final = 4.6  # inch, of each chart
 
 
-def draw_sweep(found: Sweep, path: Path) -> None:
-    """Draw it: `path` ends in .png, .svg or .pdf.
-
-    Raises:
-        InputError: the picture cannot be written there.
-    """
-    save_figure(sweep_figure(found), path)
-
-
-def sweep_figure(found: Sweep) -> Figure:
-    """The picture, not yet written."""
+def sweep_charts(found: Sweep) -> Charts:
+    """The charts of all its measures, MOST_MEASURES at most."""
     names, fields = list(measures_of(found))[:MOST_MEASURES], len(found.fields)
     words = f"{found.scene}   ·   {len(found.variants)} variants of {found.trials} trials"
     rows = [[over_field(found, name, field) for field in range(min(fields, MOST_FIELDS))] for name in names]
@@ -41,7 +28,7 @@ def sweep_figure(found: Sweep) -> Figure:
     if not names:
         nothing = "no variant could be built"
         rows = [[Chart(nothing, Axis("", 0.0, 1.0), (), instead=nothing)]]
-    return charts_figure(rows, words, WIDTH * max(len(rows[0]), 1))
+    return Charts(rows, words, WIDTH * max(len(rows[0]), 1))
 
 
 def over_field(found: Sweep, name: str, field: int) -> Chart:
