@@ -4,7 +4,7 @@ A drafted scene checked as `tol3d check` does, so that it runs as it is written.
 """
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
@@ -14,6 +14,7 @@ import numpy as np
 from tol3d.apps.drafting.drawing import source
 from tol3d.apps.drafting.entry import LAW as LAW_HERE
 from tol3d.apps.drafting.entry import Entry, Scene, Wording
+from tol3d.apps.drafting.features import faces_of
 from tol3d.apps.drafting.fixture import fixture
 from tol3d.apps.drafting.measured import MOST_MEASURES, Candidate, Key, apart, between, ranked
 from tol3d.apps.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
@@ -32,6 +33,7 @@ PER_PLAY: Final = 4.0  # guessed zones of a pair of pins in their holes: togethe
 MOST_TRIES: Final = 200
 TRIALS: Final = 10_000
 LONGEST: Final = 240  # characters of a reason
+MOST_LISTED: Final = 12  # of what a scene lacks of the shapes
 SAMPLE: Final = 256  # trials by which measures are ranked
 
 
@@ -52,12 +54,14 @@ class Draft:
         parts: of the scene.
         entries: in the order in which they are written; the parts are not among them.
         candidates: measures among which to choose; their entries are among the others.
+        contacts: of several parts.
     """
 
     files: Sequence[ReadText]
     parts: Sequence[DraftedPart]
     entries: Sequence[Entry]
     candidates: Sequence[Candidate] = ()
+    contacts: Contacts | None = None
 
     def scene(self) -> tuple[str, dict[int, Entry]]:
         """The text, and the entry of each line of it."""
@@ -79,6 +83,36 @@ class Draft:
         yield from ("", f"study: {{trials: {TRIALS}, seed: 1}}")
         for file in self.files:
             yield from self.told(file)
+        yield from listed("Found on the parts, and not in the scene:", self.features_left())
+        yield from listed("Pins in holes and slots that no move uses:", self.pairs_left())
+        threads = [(part.name, each) for part in self.parts if not part.like for each in part.features.part.threads]
+        yield from listed(
+            "Threads by name, whose faces are plain cylinders here:",
+            [f"{comment(own)}: {each}" for own, each in threads],
+        )
+
+    def features_left(self) -> Iterator[str]:
+        """Counterbores, countersinks, slots, tabs and patterns of which the scene has no surface."""
+        for part in self.parts:
+            groups = part.features.groups
+            used = {own.faces for group in groups for own in (*group.members, *group.slot)}
+            left = [
+                own for own in (() if part.like else part.features.part.machined.all)
+                if not used & {member.faces for member in own.members}
+            ]  # fmt: skip
+            for words in dict.fromkeys(own.words for own in left):
+                alike = [own for own in left if own.words == words]
+                count = f"{len(alike)} × " if len(alike) > 1 else ""
+                yield f"{comment(part.name)}: {count}{words}, {faces_of(alike[0].members[0])}"
+
+    def pairs_left(self) -> Iterator[str]:
+        """Pins in holes or slots of other parts that lie in no line of a move."""
+        moves = [entry.wording.lines for entry in self.entries if entry.section == "moves" and entry.stands]
+        lines = [line for own in moves for line in own]
+        for pair in self.contacts.pins if self.contacts is not None else ():
+            of = [part.of(name) if (name := part.features.name_of(own)) else "" for part, own in pair.ends]
+            if not all(of) or not any(all(f": {end}" in line for end in of) for line in lines):
+                yield pair.words
 
     def notes(self) -> Iterator[str]:
         """Notes to read before the scene: counts, and parts that nothing places."""
@@ -168,6 +202,16 @@ class Draft:
             yield from left
 
 
+def listed(heading: str, lines: Iterable[str]) -> Iterator[str]:
+    """A list in comments, cut after MOST_LISTED lines; nothing without lines."""
+    every = list(lines)
+    if every:
+        yield f"# {heading}"
+        yield from (f"#   {line}" for line in every[:MOST_LISTED])
+    if len(every) > MOST_LISTED:
+        yield f"#   and {len(every) - MOST_LISTED} more"
+
+
 def unread(read_text: ReadText, what: str) -> list[str]:
     """The tolerances or dimensions of a file that cannot be read, each with the reason, for the list of omissions."""
     read = {tolerance.id for tolerance in read_text.text.tolerances} | {
@@ -209,10 +253,10 @@ def draft(
         seated(part, face, other, there)
     said = [entry for part in parts if not part.like for entry in part.drawing.entries]
     said = said if inspect else list(uninspected(said))
-    if len(parts) == 1:
+    contacts = Contacts(parts) if len(parts) > 1 else None
+    if contacts is None:
         placed, candidates = fixture(parts[0], names), list(apart(parts[0], names, chosen))
     else:
-        contacts = Contacts(parts)
         placed = list(moves(contacts, names))
         candidates = list(between(contacts, names, chosen))
     if chosen is not None:
@@ -220,7 +264,7 @@ def draft(
     made = [*said, *placed, *(own.entry for own in candidates)]
     made += something(parts, made, names)
     made += () if said else guessed(parts, names)
-    return Draft(files, parts, sorted(made, key=is_inspection), candidates)
+    return Draft(files, parts, sorted(made, key=is_inspection), candidates, contacts)
 
 
 def uninspected(entries: Sequence[Entry]) -> Iterator[Entry]:

@@ -8,6 +8,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -30,6 +31,7 @@ from tol3d.cad.step.bodies import Body, bodies_of, colours_of, layers_of, names_
 from tol3d.cad.step.face_mesh import FaceMesh
 from tol3d.cad.step.faces import Face, Faces
 from tol3d.cad.step.found_features import FoundFeature, Shell, Triple, cosines_of, lengths_of, shell_of
+from tol3d.cad.step.machined import Machined
 from tol3d.cad.step.outline import Named, named_in, read_step_text
 from tol3d.cad.step.part21 import Part21, read_part21
 from tol3d.cad.step.refused import StepError, shown
@@ -52,6 +54,8 @@ LARGEST_ANSWER: Final = 2_000_000_000
 """Largest output of the other process [bytes]."""
 WORKER: Final = "tol3d.cad.step.worker"
 PROGRAM: Final = f"from {WORKER} import main; main()"
+THREAD: Final = re.compile(r"(?<![A-Za-z0-9])M[1-9][0-9]?(?:\.[0-9])?(?: ?[x×X*] ?[0-9]+(?:\.[0-9]+)?)?(?![A-Za-z0-9])")
+"""Metric threads of ISO 261 in a name, such as M6 or M8x1.25."""
 SAME: Final = 1e-6
 """mm, and fraction of the number; allowed difference of a face by Open CASCADE from the text."""
 
@@ -151,6 +155,17 @@ class StepPart:
     def shell(self) -> Shell:
         """Its faces as numbers."""
         return _shell(self.body, self.file.faces)
+
+    @property
+    def threads(self) -> tuple[str, ...]:
+        """Threads that its name, or those of its tolerances and dimensions, state; its faces are plain cylinders."""
+        texts = [self.body.name, *(own.name for own in self.named if own.what != "datum")]
+        return tuple(dict.fromkeys(each for text in texts for each in THREAD.findall(text)))
+
+    @cached_property
+    def machined(self) -> Machined:
+        """Its features that several surfaces make."""
+        return Machined(self.features, lambda own, direction: self.shell.along(own.faces, direction))
 
     def mesh(self, deflection: float = DEFLECTION) -> FaceMesh:
         """Its solids as triangles, with the loose faces beside them; without faces that cannot be triangulated.
