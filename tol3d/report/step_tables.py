@@ -167,6 +167,7 @@ def features_page(file: StepFile) -> Page:
     if len(file.uses) > 1:
         words.append(f"{len(file.uses)} parts as they stand in the file")
     more = f"{', '.join(words)}; " if words else ""
+    blocks += _elsewhere(file)
     return page(*blocks, BLANK, note(f"{more}--all lists each feature, with the line that selects it in a scene"))
 
 
@@ -236,7 +237,18 @@ def features_report(file: StepFile) -> Page:
             BLANK,
             note(f"{len(file.layers)} layers are ignored: {named}{', …' if len(file.layers) > LISTED else ''}"),
         ]
-    return page(*blocks, BLANK, note(WORDS))
+    return page(*blocks, *_elsewhere(file), BLANK, note(WORDS))
+
+
+def _elsewhere(file: StepFile) -> list[PageItem]:
+    """Parts whose shapes stand in other files, by file."""
+    counts = Counter(own.file for own in file.elsewhere)
+    listed = [f"{shown(name)!r}" + (f" ({count} ×)" if count > 1 else "") for name, count in counts.items()]
+    if not listed:
+        return []
+    more = f", and {len(listed) - MOST_PARTS} more" if len(listed) > MOST_PARTS else ""
+    words = f"{counts.total()} parts stand in other files: {', '.join(listed[:MOST_PARTS])}{more}"
+    return [note(f"{words}; tol3d new --from reads them from the folder of this file")]
 
 
 def _unread(part: StepPart) -> list[PageItem]:

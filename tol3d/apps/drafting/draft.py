@@ -5,7 +5,7 @@ A drafted scene checked as `tol3d check` does, so that it runs as it is written.
 
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, Protocol
 
@@ -17,6 +17,7 @@ from tol3d.apps.drafting.entry import Entry, Scene, Wording
 from tol3d.apps.drafting.features import faces_of
 from tol3d.apps.drafting.fixture import fixture
 from tol3d.apps.drafting.measured import MOST_MEASURES, Candidate, Key, apart, between, ranked
+from tol3d.apps.drafting.other_files import roots, with_other_files
 from tol3d.apps.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
 from tol3d.apps.drafting.touching_faces import ALONE, Contacts, moves
 from tol3d.apps.drafting.words import Names, cleaned, comment, length, scalar
@@ -55,6 +56,7 @@ class Draft:
         entries: in the order in which they are written; the parts are not among them.
         candidates: measures among which to choose; their entries are among the others.
         contacts: of several parts.
+        missing: files in which parts stand and that cannot be read, with the reason.
     """
 
     files: Sequence[ReadText]
@@ -62,6 +64,7 @@ class Draft:
     entries: Sequence[Entry]
     candidates: Sequence[Candidate] = ()
     contacts: Contacts | None = None
+    missing: Mapping[str, str] = field(default_factory=dict)
 
     def scene(self) -> tuple[str, dict[int, Entry]]:
         """The text, and the entry of each line of it."""
@@ -70,7 +73,7 @@ class Draft:
 
     def head(self) -> list[str]:
         """Heading of the scene."""
-        files = [shown(file.file.content.path.name) for file in self.files]
+        files = [shown(file.name) for file in roots([own.file for own in self.files])]
         name = cleaned(" and ".join(file.rpartition(".")[0] or file for file in files), "/\\:") or "from STEP"
         return [
             f"# Drafted by tol3d new --from {comment(' '.join(files))}; yours to edit. What the files do not say is",
@@ -83,6 +86,7 @@ class Draft:
         yield from ("", f"study: {{trials: {TRIALS}, seed: 1}}")
         for file in self.files:
             yield from self.told(file)
+        yield from listed("Parts in other files that are not in the scene:", self.parts_left())
         yield from listed("Found on the parts, and not in the scene:", self.features_left())
         yield from listed("Pins in holes and slots that no move uses:", self.pairs_left())
         threads = [(part.name, each) for part in self.parts if not part.like for each in part.features.part.threads]
@@ -90,6 +94,12 @@ class Draft:
             "Threads by name, whose faces are plain cylinders here:",
             [f"{comment(own)}: {each}" for own, each in threads],
         )
+
+    def parts_left(self) -> Iterator[str]:
+        """Parts whose files are missing."""
+        for own in (each for read_text in self.files for each in read_text.file.elsewhere):
+            if own.file in self.missing:
+                yield f"{comment(own.use.path)}: {comment(own.file)}: {comment(self.missing[own.file])}"
 
     def features_left(self) -> Iterator[str]:
         """Counterbores, countersinks, slots, tabs and patterns of which the scene has no surface."""
@@ -116,6 +126,7 @@ class Draft:
 
     def notes(self) -> Iterator[str]:
         """Notes to read before the scene: counts, and parts that nothing places."""
+        yield from self.parts_left()
         for line in self.tail():
             if line.startswith("# Of the "):
                 yield line.removeprefix("# ")
@@ -239,6 +250,7 @@ def draft(
     Raises:
         InputError: a file cannot be read, or a seat is of no part or face.
     """
+    contents, missing = with_other_files(contents)
     files = read_files(contents)
     names = Names()
     parts = list(drafted_parts(files, names))
@@ -264,7 +276,7 @@ def draft(
     made = [*said, *placed, *(own.entry for own in candidates)]
     made += something(parts, made, names)
     made += () if said else guessed(parts, names)
-    return Draft(files, parts, sorted(made, key=is_inspection), candidates, contacts)
+    return Draft(files, parts, sorted(made, key=is_inspection), candidates, contacts, missing)
 
 
 def uninspected(entries: Sequence[Entry]) -> Iterator[Entry]:
@@ -433,8 +445,8 @@ def scene_from(
     tell(f"checking {len(drafted.parts)} parts with {len(drafted.entries)} entries")
     with tempfile.TemporaryDirectory(prefix="tol3d-new-") as made:
         folder = Path(made)
-        for content in contents:
-            (folder / content.path.name).write_bytes(content.content)
+        for file in drafted.files:
+            (folder / file.file.name).write_bytes(file.file.content.content)
 
         def check(text: str) -> None:
             (folder / SCENE).write_text(text, encoding="utf-8")

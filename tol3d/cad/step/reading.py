@@ -35,7 +35,7 @@ from tol3d.cad.step.machined import Machined
 from tol3d.cad.step.outline import Named, named_in, read_step_text
 from tol3d.cad.step.part21 import Part21, read_part21
 from tol3d.cad.step.refused import StepError, shown
-from tol3d.cad.step.structure import UNNAMED
+from tol3d.cad.step.structure import UNNAMED, Leaf
 from tol3d.errors import InputError
 from tol3d.files import FileContent, UnreadableFileError, read_contained
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
@@ -103,12 +103,24 @@ class Use:
 
 
 @dataclass(frozen=True)
+class PartElsewhere:
+    """A part whose shape stands in another file: the use here, and the name of that file as this one states it."""
+
+    use: Use
+    file: str
+
+
+@dataclass(frozen=True)
 class ReadFile:
-    """A file as it is kept: its products with geometry, where each is used, and its layers, which are ignored."""
+    """A file as it is kept: its products with geometry, where each is used, and its layers, which are ignored.
+
+    Beside them its parts that stand in other files, of which nothing is read here.
+    """
 
     parts: tuple[ReadPart, ...]
     uses: tuple[Use, ...]
     layers: tuple[str, ...]
+    elsewhere: tuple[PartElsewhere, ...] = ()
 
     @property
     def solids(self) -> "Solids":
@@ -248,6 +260,11 @@ class StepFile:
         return self.read.uses
 
     @property
+    def elsewhere(self) -> tuple[PartElsewhere, ...]:
+        """Placed parts whose shapes stand in other files."""
+        return self.read.elsewhere
+
+    @property
     def layers(self) -> tuple[str, ...]:
         """Names of its layers, which nothing here heeds."""
         return self.read.layers
@@ -259,6 +276,10 @@ class StepFile:
             StepError: there is none.
         """
         found = next((use for use in self.uses if use.path == path), None)
+        if (other := next((own.file for own in self.read.elsewhere if own.use.path == path), None)) is not None:
+            raise StepError(
+                f"expected a use whose shape is in {self.name}, got {path!r}, which stands in {shown(other)!r}"
+            )
         if found is None:
             known = [use.path for use in self.uses]
             near = hint(path, known)
@@ -281,14 +302,19 @@ def read_step(content: FileContent) -> StepFile:
 
     def make() -> Arrays:
         text = read_step_text(content.content, content.path.name)
-        bodies = bodies_of(text.file, text.structure)
+        structure = text.structure
+        elsewhere = tuple(
+            PartElsewhere(_used(leaf), structure.elsewhere[leaf.product]) for leaf in structure.leaves_elsewhere
+        )
+        if elsewhere and not structure.leaves:
+            return _kept(ReadFile((), (), layers_of(text.file), elsewhere))
+        bodies = bodies_of(text.file, structure)
         faces, mesh = _geometry(content, bodies, text.file)
         named = tuple(named_in(text))
         parts = tuple(_read_part(text.file, body, faces, mesh, named) for body in bodies)
         own = {body.product for body in bodies}
-        uses = (Use("/".join(leaf.path), leaf.product, leaf.placement) for leaf in text.structure.leaves)
-        found = ReadFile(parts, tuple(use for use in uses if use.product in own), layers_of(text.file))
-        return {"read": np.frombuffer(READ.dump_json(found), dtype=np.uint8)}
+        uses = tuple(_used(leaf) for leaf in structure.leaves if leaf.product in own)
+        return _kept(ReadFile(parts, uses, layers_of(text.file), elsewhere))
 
     sources = sources_of(__name__)
     arrays = _cached(f"step-read-{_key(content, {'sources': sources})}.npz", make)
@@ -296,6 +322,14 @@ def read_step(content: FileContent) -> StepFile:
         return StepFile(content, READ.validate_json(arrays["read"].tobytes()))
     except (KeyError, ValidationError):
         raise StepError(f"{cache_folder()}: a cache entry was changed; delete the folder") from None
+
+
+def _used(leaf: Leaf) -> Use:
+    return Use("/".join(leaf.path), leaf.product, leaf.placement)
+
+
+def _kept(found: ReadFile) -> Arrays:
+    return {"read": np.frombuffer(READ.dump_json(found), dtype=np.uint8)}
 
 
 def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh | None, named: Sequence[Named]) -> ReadPart:
