@@ -8,11 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Final
 
+import numpy as np
+
 from tol3d.cad.step.datum import Datum
 from tol3d.cad.step.dimension import Dimension
 from tol3d.cad.step.feature import NamedFeature
 from tol3d.cad.step.found_features import FeatureKind, FoundFeature
 from tol3d.cad.step.frame import frame
+from tol3d.cad.step.machined import MadeOfSeveral, Stepped
 from tol3d.cad.step.meaning import Meaning, Meanings, surfaces_of
 from tol3d.cad.step.outline import Remark, StepText, disagreements
 from tol3d.cad.step.reading import StepFile, StepPart
@@ -90,6 +93,15 @@ class AlikeRow:
 
 
 @dataclass(frozen=True)
+class MachinedRow:
+    """Features that several surfaces make, of one size, by the first of them."""
+
+    alike: Sequence[MadeOfSeveral]
+    place = Computed(Shows("the first at [mm]"), lambda row: _numbers(_middle(row.alike[0]), 4))
+    faces = Computed(Shows("its faces", "words"), lambda row: _few(row.alike[0]))
+
+
+@dataclass(frozen=True)
 class FeatureNumbers:
     """All numbers of a feature [mm, rad, mm²]."""
 
@@ -144,6 +156,7 @@ def features_page(file: StepFile) -> Page:
         blocks += [
             Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))),
             declared_table("", rows[:room]),
+            *_machined(part, max(LEAST_ROWS, room // 4)),
             *_unread(part),
         ]
     words = []
@@ -154,6 +167,7 @@ def features_page(file: StepFile) -> Page:
     if len(file.uses) > 1:
         words.append(f"{len(file.uses)} parts as they stand in the file")
     more = f"{', '.join(words)}; " if words else ""
+    blocks += _elsewhere(file)
     return page(*blocks, BLANK, note(f"{more}--all lists each feature, with the line that selects it in a scene"))
 
 
@@ -169,6 +183,35 @@ def _alike(part: StepPart) -> list[tuple[str, AlikeRow]]:
     return [(group[0][0], AlikeRow([own for _, own in group], part)) for group in ordered]
 
 
+def _machined(part: StepPart, most: int | None) -> list[PageItem]:
+    """Features of a part that several surfaces make, those of one size together, and threads that names state."""
+    alike: dict[str, list[MadeOfSeveral]] = {}
+    for own in part.machined.all:
+        alike.setdefault(own.words, []).append(own)
+    rows = [(f"{len(own)} × {words}" if len(own) > 1 else words, MachinedRow(own)) for words, own in alike.items()]
+    blocks: list[PageItem] = [declared_table("made of several", rows[:most])] if rows else []
+    if most is not None and len(rows) > most:
+        blocks.append(note(f"and {len(rows) - most} more that several faces make"))
+    if part.threads:
+        named = ", ".join(map(shown, part.threads[:LISTED]))
+        blocks.append(note(f"thread {named} by name: its faces are plain cylinders"))
+    return blocks
+
+
+def _middle(own: MadeOfSeveral) -> Sequence[float]:
+    """Place of a feature that several surfaces make: of its hole, or the middle of its members."""
+    if isinstance(own, Stepped):
+        return own.hole.at
+    at = np.mean([member.at for member in own.members], axis=0)
+    return [float(each) for each in at]
+
+
+def _few(own: MadeOfSeveral) -> str:
+    """Numbers of the first of its faces."""
+    faces = [face for member in own.members for face in member.faces]
+    return ", ".join(f"#{face}" for face in faces[:LISTED]) + (", …" if len(faces) > LISTED else "")
+
+
 def _letters(part: StepPart, feature: FoundFeature) -> list[str]:
     """Letters of the datums on a feature."""
     faces = {*feature.faces, *feature.repeated}
@@ -180,7 +223,12 @@ def features_report(file: StepFile) -> Page:
     blocks: list[PageItem] = []
     for part in file.parts:
         blocks += [BLANK] if blocks else []
-        blocks += [Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))), _table(part), *_unread(part)]
+        blocks += [
+            Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))),
+            _table(part),
+            *_machined(part, None),
+            *_unread(part),
+        ]
     if len(file.uses) > 1:
         blocks += [BLANK, *titled("parts as they stand in the file", _uses(file))]
     if file.layers:
@@ -189,7 +237,18 @@ def features_report(file: StepFile) -> Page:
             BLANK,
             note(f"{len(file.layers)} layers are ignored: {named}{', …' if len(file.layers) > LISTED else ''}"),
         ]
-    return page(*blocks, BLANK, note(WORDS))
+    return page(*blocks, *_elsewhere(file), BLANK, note(WORDS))
+
+
+def _elsewhere(file: StepFile) -> list[PageItem]:
+    """Parts whose shapes stand in other files, by file."""
+    counts = Counter(own.file for own in file.elsewhere)
+    listed = [f"{shown(name)!r}" + (f" ({count} ×)" if count > 1 else "") for name, count in counts.items()]
+    if not listed:
+        return []
+    more = f", and {len(listed) - MOST_PARTS} more" if len(listed) > MOST_PARTS else ""
+    words = f"{counts.total()} parts stand in other files: {', '.join(listed[:MOST_PARTS])}{more}"
+    return [note(f"{words}; tol3d new --from reads them from the folder of this file")]
 
 
 def _unread(part: StepPart) -> list[PageItem]:

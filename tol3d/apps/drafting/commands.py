@@ -76,6 +76,7 @@ def _draft(
 ) -> None:
     """Write a scene from STEP files, which are copied beside it where they lie elsewhere."""
     from tol3d.apps.drafting import Seat, scene_from
+    from tol3d.apps.drafting.other_files import with_other_files
     from tol3d.apps.drafting.rexs import is_rexs
     from tol3d.errors import InputError, unwritable
     from tol3d.files import read_file
@@ -97,6 +98,8 @@ def _draft(
         raise InputError(f"{twice}: expected files of different names, got two")
     target = out or Path(Path(words[0]).stem + ".yaml")
     _refuse_there(target, force)
+    with err_console.status(f"reading {', '.join(names)}"):
+        contents, _ = with_other_files(contents)
     copies = [(target.parent / own.path.name, own.content) for own in contents]
     for path, content in copies:
         if path.exists() and path.read_bytes() != content:

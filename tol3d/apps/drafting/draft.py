@@ -4,8 +4,8 @@ A drafted scene checked as `tol3d check` does, so that it runs as it is written.
 """
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, Protocol
 
@@ -14,8 +14,10 @@ import numpy as np
 from tol3d.apps.drafting.drawing import source
 from tol3d.apps.drafting.entry import LAW as LAW_HERE
 from tol3d.apps.drafting.entry import Entry, Scene, Wording
+from tol3d.apps.drafting.features import faces_of
 from tol3d.apps.drafting.fixture import fixture
 from tol3d.apps.drafting.measured import MOST_MEASURES, Candidate, Key, apart, between, ranked
+from tol3d.apps.drafting.other_files import roots, with_other_files
 from tol3d.apps.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
 from tol3d.apps.drafting.touching_faces import ALONE, Contacts, moves
 from tol3d.apps.drafting.words import Names, cleaned, comment, length, scalar
@@ -32,6 +34,7 @@ PER_PLAY: Final = 4.0  # guessed zones of a pair of pins in their holes: togethe
 MOST_TRIES: Final = 200
 TRIALS: Final = 10_000
 LONGEST: Final = 240  # characters of a reason
+MOST_LISTED: Final = 12  # of what a scene lacks of the shapes
 SAMPLE: Final = 256  # trials by which measures are ranked
 
 
@@ -52,12 +55,16 @@ class Draft:
         parts: of the scene.
         entries: in the order in which they are written; the parts are not among them.
         candidates: measures among which to choose; their entries are among the others.
+        contacts: of several parts.
+        missing: files in which parts stand and that cannot be read, with the reason.
     """
 
     files: Sequence[ReadText]
     parts: Sequence[DraftedPart]
     entries: Sequence[Entry]
     candidates: Sequence[Candidate] = ()
+    contacts: Contacts | None = None
+    missing: Mapping[str, str] = field(default_factory=dict)
 
     def scene(self) -> tuple[str, dict[int, Entry]]:
         """The text, and the entry of each line of it."""
@@ -66,7 +73,7 @@ class Draft:
 
     def head(self) -> list[str]:
         """Heading of the scene."""
-        files = [shown(file.file.content.path.name) for file in self.files]
+        files = [shown(file.name) for file in roots([own.file for own in self.files])]
         name = cleaned(" and ".join(file.rpartition(".")[0] or file for file in files), "/\\:") or "from STEP"
         return [
             f"# Drafted by tol3d new --from {comment(' '.join(files))}; yours to edit. What the files do not say is",
@@ -79,9 +86,47 @@ class Draft:
         yield from ("", f"study: {{trials: {TRIALS}, seed: 1}}")
         for file in self.files:
             yield from self.told(file)
+        yield from listed("Parts in other files that are not in the scene:", self.parts_left())
+        yield from listed("Found on the parts, and not in the scene:", self.features_left())
+        yield from listed("Pins in holes and slots that no move uses:", self.pairs_left())
+        threads = [(part.name, each) for part in self.parts if not part.like for each in part.features.part.threads]
+        yield from listed(
+            "Threads by name, whose faces are plain cylinders here:",
+            [f"{comment(own)}: {each}" for own, each in threads],
+        )
+
+    def parts_left(self) -> Iterator[str]:
+        """Parts whose files are missing."""
+        for own in (each for read_text in self.files for each in read_text.file.elsewhere):
+            if own.file in self.missing:
+                yield f"{comment(own.use.path)}: {comment(own.file)}: {comment(self.missing[own.file])}"
+
+    def features_left(self) -> Iterator[str]:
+        """Counterbores, countersinks, slots, tabs and patterns of which the scene has no surface."""
+        for part in self.parts:
+            groups = part.features.groups
+            used = {own.faces for group in groups for own in (*group.members, *group.slot)}
+            left = [
+                own for own in (() if part.like else part.features.part.machined.all)
+                if not used & {member.faces for member in own.members}
+            ]  # fmt: skip
+            for words in dict.fromkeys(own.words for own in left):
+                alike = [own for own in left if own.words == words]
+                count = f"{len(alike)} × " if len(alike) > 1 else ""
+                yield f"{comment(part.name)}: {count}{words}, {faces_of(alike[0].members[0])}"
+
+    def pairs_left(self) -> Iterator[str]:
+        """Pins in holes or slots of other parts that lie in no line of a move."""
+        moves = [entry.wording.lines for entry in self.entries if entry.section == "moves" and entry.stands]
+        lines = [line for own in moves for line in own]
+        for pair in self.contacts.pins if self.contacts is not None else ():
+            of = [part.of(name) if (name := part.features.name_of(own)) else "" for part, own in pair.ends]
+            if not all(of) or not any(all(f": {end}" in line for end in of) for line in lines):
+                yield pair.words
 
     def notes(self) -> Iterator[str]:
         """Notes to read before the scene: counts, and parts that nothing places."""
+        yield from self.parts_left()
         for line in self.tail():
             if line.startswith("# Of the "):
                 yield line.removeprefix("# ")
@@ -168,6 +213,16 @@ class Draft:
             yield from left
 
 
+def listed(heading: str, lines: Iterable[str]) -> Iterator[str]:
+    """A list in comments, cut after MOST_LISTED lines; nothing without lines."""
+    every = list(lines)
+    if every:
+        yield f"# {heading}"
+        yield from (f"#   {line}" for line in every[:MOST_LISTED])
+    if len(every) > MOST_LISTED:
+        yield f"#   and {len(every) - MOST_LISTED} more"
+
+
 def unread(read_text: ReadText, what: str) -> list[str]:
     """The tolerances or dimensions of a file that cannot be read, each with the reason, for the list of omissions."""
     read = {tolerance.id for tolerance in read_text.text.tolerances} | {
@@ -195,6 +250,7 @@ def draft(
     Raises:
         InputError: a file cannot be read, or a seat is of no part or face.
     """
+    contents, missing = with_other_files(contents)
     files = read_files(contents)
     names = Names()
     parts = list(drafted_parts(files, names))
@@ -209,10 +265,10 @@ def draft(
         seated(part, face, other, there)
     said = [entry for part in parts if not part.like for entry in part.drawing.entries]
     said = said if inspect else list(uninspected(said))
-    if len(parts) == 1:
+    contacts = Contacts(parts) if len(parts) > 1 else None
+    if contacts is None:
         placed, candidates = fixture(parts[0], names), list(apart(parts[0], names, chosen))
     else:
-        contacts = Contacts(parts)
         placed = list(moves(contacts, names))
         candidates = list(between(contacts, names, chosen))
     if chosen is not None:
@@ -220,7 +276,7 @@ def draft(
     made = [*said, *placed, *(own.entry for own in candidates)]
     made += something(parts, made, names)
     made += () if said else guessed(parts, names)
-    return Draft(files, parts, sorted(made, key=is_inspection), candidates)
+    return Draft(files, parts, sorted(made, key=is_inspection), candidates, contacts, missing)
 
 
 def uninspected(entries: Sequence[Entry]) -> Iterator[Entry]:
@@ -389,8 +445,8 @@ def scene_from(
     tell(f"checking {len(drafted.parts)} parts with {len(drafted.entries)} entries")
     with tempfile.TemporaryDirectory(prefix="tol3d-new-") as made:
         folder = Path(made)
-        for content in contents:
-            (folder / content.path.name).write_bytes(content.content)
+        for file in drafted.files:
+            (folder / file.file.name).write_bytes(file.file.content.content)
 
         def check(text: str) -> None:
             (folder / SCENE).write_text(text, encoding="utf-8")

@@ -7,7 +7,18 @@ from typing import Final
 import numpy as np
 
 from tol3d.apps.drafting.words import UNNAMEABLE_FEATURE, Names, direction, length, place, scalar
-from tol3d.cad.step import FoundFeature, Selector, StepError, StepPart, Triple, by_place, line_of, selected, shown
+from tol3d.cad.step import (
+    FoundFeature,
+    HolePattern,
+    Selector,
+    StepError,
+    StepPart,
+    Triple,
+    by_place,
+    line_of,
+    selected,
+    shown,
+)
 from tol3d.numerics.arrays import Array
 
 USABLE: Final = frozenset(("plane", "hole", "pin", "fillet", "round", "cone", "ball", "socket"))
@@ -137,6 +148,12 @@ class Features:
                     return group, name
         return None
 
+    def name_of(self, member: FoundFeature) -> str:
+        """Name of a feature, or of the slot that it is a wall of; "" if neither is selected."""
+        slot = next((own.name for own in self.groups if member.faces in {wall.faces for wall in own.slot}), "")
+        known = self.named(member)
+        return slot or (known[1] if known else "")
+
     def name(self, member: FoundFeature, wish: str = "") -> str:
         """Name of a feature, which is selected if it is not yet.
 
@@ -209,9 +226,18 @@ class Features:
             raise StepError("no one line selects them")
         first = ordered[0]
         name = self.names.new(wish, self.kind_name(first.kind), len(ordered))
-        made = Group(name, ordered, line or self.by_faces(first), comment=described(ordered))
+        made = Group(name, ordered, line or self.by_faces(first), comment="; ".join(self.told(ordered)))
         self.groups.append(made)
         return made
+
+    def told(self, members: Sequence[FoundFeature]) -> Iterator[str]:
+        """Features in words, and what they are part of: a counterbore, a tab, a pattern of holes."""
+        yield described(members)
+        faces = {own.faces for own in members}
+        for several in self.part.machined.all:
+            whole = {own.faces for own in several.members}
+            if faces & whole:
+                yield several.words if faces >= whole or not isinstance(several, HolePattern) else f"of {several.words}"
 
     def kind_name(self, kind: str) -> str:
         """A name for the next feature of a kind: "hole 3"."""

@@ -1,6 +1,7 @@
 """The parts of a drafted scene: one of each use in each file, those of one product alike."""
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -10,6 +11,7 @@ import numpy as np
 from tol3d.apps.drafting.drawing import Drawing
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.features import Features
+from tol3d.apps.drafting.other_files import roots
 from tol3d.apps.drafting.words import Names, across, comment, direction, place, scalar
 from tol3d.cad.step import (
     FoundFeature,
@@ -20,6 +22,7 @@ from tol3d.cad.step import (
     Use,
     read_step,
     read_step_text,
+    shown,
     surfaces_of,
 )
 from tol3d.files import FileContent
@@ -27,6 +30,7 @@ from tol3d.numerics.arrays import Array
 
 STILL: Final = 1e-12
 MOST_PARTS: Final = 200  # of one scene that a person reads
+MOST_NAMED: Final = 6  # files in a message
 MOST_SIGNS: Final = 24  # of a part's name that a person types
 
 
@@ -116,22 +120,75 @@ def read_files(contents: Sequence[FileContent]) -> tuple[ReadText, ...]:
     return tuple(found)
 
 
-def drafted_parts(files: Sequence[ReadText], names: Names) -> Iterator[DraftedPart]:
-    """A part of each use in each file; their drawings are not read yet.
+@dataclass(frozen=True)
+class Standing:
+    """A part as it stands in the scene.
+
+    Args:
+        file: that has its shape.
+        use: in that file.
+        pose: in the world (4, 4) [mm].
+        by_file: True if that file states the pose.
+    """
+
+    file: ReadText
+    use: Use
+    pose: Array
+    by_file: bool
+
+
+def standing(files: Sequence[ReadText]) -> Iterator[Standing]:
+    """Each part of the files that no other refers to, with those of the files that these refer to.
 
     Raises:
         StepError: there are too many.
     """
-    count = sum(len(own.file.uses) for own in files)
-    if count > MOST_PARTS:
-        raise StepError(f"expected at most {MOST_PARTS} parts in a scene, got {count}")
-    for file in files:
-        first: dict[int, DraftedPart] = {}
-        wishes = use_names(file.file)
-        for use in file.file.uses:
-            made = drafted_part(file, use, names.new(wishes[use.path], "part"), names, first.get(use.product))
-            first.setdefault(use.product, made)
-            yield made
+    by_name = {own.file.name: own for own in files}
+    tops = roots([own.file for own in files])
+    waiting = [(own, np.eye(4), True) for own in files if own.file in tops]
+    count = 0
+    while waiting:
+        read_text, pose, top = waiting.pop(0)
+        single = len(read_text.file.uses) == 1 and not read_text.file.elsewhere
+        for use in read_text.file.uses:
+            own_pose = pose if single else pose @ posed(use)
+            yield Standing(read_text, use, own_pose, top and not single)
+        inner = [(by_name[own.file], pose @ posed(own.use), False) for own in read_text.file.elsewhere
+                 if own.file in by_name]  # fmt: skip
+        waiting[:0] = inner
+        count += max(1, len(read_text.file.uses))  # empty assemblies may be used often too
+        if count + len(waiting) > MOST_PARTS:
+            raise StepError(f"expected at most {MOST_PARTS} parts in a scene, got {count + len(waiting)}")
+
+
+def drafted_parts(files: Sequence[ReadText], names: Names) -> Iterator[DraftedPart]:
+    """A part of each use in each file; their drawings are not read yet.
+
+    Raises:
+        StepError: there are too many, or none.
+    """
+    every = list(standing(files))
+    if not every:
+        lacking = ", ".join(sorted({shown(each.file) for own in files for each in own.file.elsewhere})[:MOST_NAMED])
+        raise StepError(f"{files[0].file.name}: its parts stand in files that are not in its folder: {lacking}")
+    first: dict[tuple[str, int], DraftedPart] = {}
+    for own, wish in zip(every, names_of(every), strict=True):
+        key = own.file.file.name, own.use.product
+        made = drafted_part(own, names.new(wish, "part"), names, first.get(key))
+        first.setdefault(key, made)
+        yield made
+
+
+def names_of(every: Sequence[Standing]) -> Iterator[str]:
+    """A short name of each part: that of its use in its file, numbered where other files place that several times."""
+    uses = Counter((own.file.file.name, own.use.path) for own in every)
+    counts: Counter[tuple[str, str]] = Counter()
+    wishes = {own.file.file.name: use_names(own.file.file) for own in every}
+    for own in every:
+        key = own.file.file.name, own.use.path
+        counts[key] += 1
+        wish = wishes[key[0]][key[1]]
+        yield wish if uses[key] == 1 else f"{wish} {counts[key]}"
 
 
 def use_names(file: StepFile) -> dict[str, str]:
@@ -157,19 +214,18 @@ def shortened(text: str) -> str:
     return whole[: cut if cut > 0 else MOST_SIGNS].rstrip(" _-")
 
 
-def drafted_part(read_text: ReadText, use: Use, name: str, names: Names, like: DraftedPart | None) -> DraftedPart:
+def drafted_part(own: Standing, name: str, names: Names, like: DraftedPart | None) -> DraftedPart:
     """The part of one use."""
-    part = next(each for each in read_text.file.parts if each.body.product == use.product)
+    read_text = own.file
+    part = next(each for each in read_text.file.parts if each.body.product == own.use.product)
     single = len(read_text.file.uses) == 1
     features = like.features if like is not None else Features(part)
-    pose = np.eye(4) if single else posed(use)
-    selection = "" if single else f"use: {scalar(use.path)}"
+    selection = "" if single else f"use: {scalar(own.use.path)}"
     if single and len(read_text.file.parts) > 1:
         selection = f"product: {scalar(part.name)}"
     drawing = like.drawing if like is not None else Drawing(read_text.text, read_text.meanings, name, features, names)
-    return DraftedPart(
-        name, read_text.file, selection, pose, not single, features, drawing, "" if like is None else like.name
-    )
+    like_name = "" if like is None else like.name
+    return DraftedPart(name, read_text.file, selection, own.pose, own.by_file, features, drawing, like_name)
 
 
 def posed(use: Use) -> Array:

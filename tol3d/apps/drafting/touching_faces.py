@@ -9,8 +9,8 @@ import numpy as np
 
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.parts import DraftedPart
-from tol3d.apps.drafting.slots import PinInSlot, pins_in_slots
-from tol3d.apps.drafting.words import Names, number, scalar
+from tol3d.apps.drafting.pins_in_slots import PinInSlot, pins_in_slots
+from tol3d.apps.drafting.words import Names, comment, number, scalar
 from tol3d.assembly import Cone, cone_seat, unfit_cones
 from tol3d.cad.step import FoundFeature
 from tol3d.numerics.arrays import Array
@@ -60,6 +60,19 @@ class Coaxial:
     def axis(self) -> Array:
         """Axis in the world (3,)."""
         return self.other.along(self.there.direction)
+
+
+@dataclass(frozen=True)
+class Pinned:
+    """A pin of one part in a hole or slot of another.
+
+    Args:
+        ends: the pin, then the hole or a wall of the slot, each with its part.
+        words: both with their sizes.
+    """
+
+    ends: tuple[tuple[DraftedPart, FoundFeature], tuple[DraftedPart, FoundFeature]]
+    words: str
 
 
 def facing(part: DraftedPart, other: DraftedPart) -> list[Faces]:
@@ -200,6 +213,21 @@ class Contacts:
         """See `pins_in_slots`."""
         return self._once("slotted", pins_in_slots, part, other)
 
+    @property
+    def pins(self) -> Iterator[Pinned]:
+        """Pins in holes and slots of all pairs of parts."""
+        for k, part in enumerate(self.parts):
+            for other in self.parts[:k]:
+                for own in self.coaxial(part, other):
+                    ends = (own.part, own.own), (own.other, own.there)
+                    pin, hole = reversed(ends) if own.own.hollow else ends
+                    if not own.holes:
+                        yield Pinned((pin, hole), f"{sized(*pin)} in {sized(*hole)}")
+                for slotted in self.slotted(part, other):
+                    words = f"{sized(slotted.pinned, slotted.pin)} in a slot {number(slotted.slot.width)} wide of "
+                    ends = (slotted.pinned, slotted.pin), (slotted.slotted, slotted.slot.walls[0])
+                    yield Pinned(ends, words + comment(slotted.slotted.name))
+
     def touch(self, part: DraftedPart, other: DraftedPart) -> bool:
         """True if faces of two parts touch in their poses."""
         meets = any(own.gap < TOUCHING for own in self.facing(part, other))
@@ -231,6 +259,12 @@ class Contacts:
             pins = [{each.own.faces: each.own for each in end if same_line(each, own)} for end in ends]
             found += [pin for faces, pin in pins[0].items() if faces in pins[1] and not pin.hollow]
         return found
+
+
+def sized(part: DraftedPart, own: FoundFeature) -> str:
+    """A round feature with its part, in words."""
+    named = part.features.named(own)
+    return f"{comment(f'{part.name}.{named[1]}' if named else f'{own.kind} of {part.name}')} ⌀{number(2 * own.radius)}"
 
 
 def size_of(part: DraftedPart) -> float:

@@ -14,6 +14,7 @@ from tol3d.import_path import lazy_names
 if TYPE_CHECKING:
     from tol3d.cad.step.faces import extent
     from tol3d.cad.step.found_features import FoundFeature, Triple, by_place
+    from tol3d.cad.step.machined import HolePattern, Machined, Slot, Stepped, Tab
     from tol3d.cad.step.meaning import LOCATIONS, MATERIAL, ORIENTATIONS, Meaning, Meanings, surfaces_of
     from tol3d.cad.step.reading import StepFile, StepPart, Use, read_step
     from tol3d.cad.step.refused import LONGEST_SHOWN, shown
@@ -26,11 +27,16 @@ _HOMES = {
     "MATERIAL": "tol3d.cad.step.meaning",
     "ORIENTATIONS": "tol3d.cad.step.meaning",
     "FoundFeature": "tol3d.cad.step.found_features",
+    "HolePattern": "tol3d.cad.step.machined",
+    "Machined": "tol3d.cad.step.machined",
     "Meaning": "tol3d.cad.step.meaning",
     "Meanings": "tol3d.cad.step.meaning",
     "Selector": "tol3d.cad.step.selectors",
+    "Slot": "tol3d.cad.step.machined",
     "StepFile": "tol3d.cad.step.reading",
     "StepPart": "tol3d.cad.step.reading",
+    "Stepped": "tol3d.cad.step.machined",
+    "Tab": "tol3d.cad.step.machined",
     "Triple": "tol3d.cad.step.found_features",
     "Use": "tol3d.cad.step.reading",
     "by_place": "tol3d.cad.step.found_features",
@@ -51,17 +57,22 @@ __all__ = [
     "Datum",
     "Dimension",
     "FoundFeature",
+    "HolePattern",
     "Leaf",
+    "Machined",
     "Meaning",
     "Meanings",
     "Product",
     "Remark",
     "Selector",
+    "Slot",
     "StepError",
     "StepFile",
     "StepPart",
     "StepText",
+    "Stepped",
     "Structure",
+    "Tab",
     "Tolerance",
     "Triple",
     "Use",

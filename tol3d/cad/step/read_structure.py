@@ -91,7 +91,14 @@ class StructureReader:
         """
         products = {definition: self.product(definition) for definition in self.definitions}
         occurrences = tuple(self.occurrence(record, products) for record in self.file.records(USES[0]))
-        structure = Structure(self.file.name, products, (*occurrences, *self.bare_maps(products)))
+        used = (*occurrences, *self.bare_maps(products))
+        assemblies = {occurrence.parent for occurrence in used}
+        elsewhere = {
+            product.id: name
+            for product in products.values()
+            if not product.faces and product.id not in assemblies and (name := self.file_of(product.id))
+        }
+        structure = Structure(self.file.name, products, used, elsewhere)
         self.refuse_other_files(structure)
         return structure
 
@@ -301,14 +308,66 @@ class StructureReader:
                 raise StepError(f"{record.instance.place}: expected a transformation that does not mirror")
         return rigid(*found, located(self.file, origin, unit))
 
+    @cached_property
+    def documents(self) -> dict[int, list[int]]:
+        """Documents that each definition refers to, by its own `#id` or those of its formation and product."""
+        found: dict[int, list[int]] = {}
+        for record in self.file.records("APPLIED_DOCUMENT_REFERENCE"):
+            for item in references_in(record.arguments[2:]):
+                found.setdefault(item, []).append(int(record.reference(0)))
+        return found
+
+    @cached_property
+    def file_names(self) -> dict[int, str]:
+        """Name of the file that each document is; that of its identification before its own."""
+        found = {record.instance.id: record.instance.inherited("DOCUMENT").text(0).strip()
+                 for record in self.file.records("DOCUMENT_FILE")}  # fmt: skip
+        for record in self.file.records("APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT"):
+            for item in references_in(record.arguments[3:]):
+                if item in found and record.text(0).strip():
+                    found[item] = record.text(0).strip()
+        return found
+
+    @cached_property
+    def digital(self) -> dict[int, list[int]]:
+        """Files of each document: those of the definition that it is equivalent to."""
+        files: dict[int, list[int]] = {}
+        for record in self.file.records("PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS"):
+            own = record.instance.inherited("PRODUCT_DEFINITION")
+            files.setdefault(int(own.reference(2)), []).extend(references_in(record.arguments[-1:]))
+        found: dict[int, list[int]] = {}
+        for record in self.file.records("DOCUMENT_PRODUCT_EQUIVALENCE"):
+            found.setdefault(int(record.reference(2)), []).extend(files.get(int(record.reference(3)), ()))
+        return found
+
+    def documents_of(self, definition: int) -> tuple[int, ...]:
+        """Files that a definition names: its own, and those of documents that it refers to."""
+        own = self.file[definition].record("PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS")
+        direct = [] if own is None else list(references_in(own.arguments[-1:]))
+        formation = int(self.file[definition].inherited("PRODUCT_DEFINITION").reference(2))
+        for each in (definition, formation):
+            for document in self.documents.get(each, ()):
+                direct += [document, *self.digital.get(document, ())]
+        return tuple(each for each in dict.fromkeys(direct) if each in self.file_names)
+
+    def file_of(self, definition: int) -> str:
+        """Name of the one file in which the shape of a definition stands; "" where it names none, or several."""
+        if self.shapes.get(definition) is None:
+            return ""
+        names = {self.file_names[each] for each in self.documents_of(definition)}
+        return names.pop() if len(names) == 1 else ""
+
     def refuse_other_files(self, structure: Structure) -> None:
-        """Refuse parts whose shape stands in another file."""
+        """Refuse parts whose shape stands in another file that they do not name."""
         files = [record.instance.inherited("DOCUMENT").text(0) for record in self.file.records("DOCUMENT_FILE")]
         named = [record.text(0) for record in self.file.records("APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT")]
         empty = [
             each
             for each in structure.products.values()
-            if each.id not in structure.inside and not each.solids and not each.loose_faces
+            if each.id not in structure.inside
+            and not each.faces
+            and each.shape is not None
+            and each.id not in structure.elsewhere
         ]
         if empty and (files or named):
             told = ", ".join(repr(shown(each)) for each in dict.fromkeys(each for each in (*named, *files) if each))

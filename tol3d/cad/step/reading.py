@@ -8,6 +8,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -30,10 +31,11 @@ from tol3d.cad.step.bodies import Body, bodies_of, colours_of, layers_of, names_
 from tol3d.cad.step.face_mesh import FaceMesh
 from tol3d.cad.step.faces import Face, Faces
 from tol3d.cad.step.found_features import FoundFeature, Shell, Triple, cosines_of, lengths_of, shell_of
+from tol3d.cad.step.machined import Machined
 from tol3d.cad.step.outline import Named, named_in, read_step_text
 from tol3d.cad.step.part21 import Part21, read_part21
 from tol3d.cad.step.refused import StepError, shown
-from tol3d.cad.step.structure import UNNAMED
+from tol3d.cad.step.structure import UNNAMED, Leaf
 from tol3d.errors import InputError
 from tol3d.files import FileContent, UnreadableFileError, read_contained
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
@@ -52,6 +54,8 @@ LARGEST_ANSWER: Final = 2_000_000_000
 """Largest output of the other process [bytes]."""
 WORKER: Final = "tol3d.cad.step.worker"
 PROGRAM: Final = f"from {WORKER} import main; main()"
+THREAD: Final = re.compile(r"(?<![A-Za-z0-9])M[1-9][0-9]?(?:\.[0-9])?(?: ?[x×X*] ?[0-9]+(?:\.[0-9]+)?)?(?![A-Za-z0-9])")
+"""Metric threads of ISO 261 in a name, such as M6 or M8x1.25."""
 SAME: Final = 1e-6
 """mm, and fraction of the number; allowed difference of a face by Open CASCADE from the text."""
 
@@ -99,12 +103,24 @@ class Use:
 
 
 @dataclass(frozen=True)
+class PartElsewhere:
+    """A part whose shape stands in another file: the use here, and the name of that file as this one states it."""
+
+    use: Use
+    file: str
+
+
+@dataclass(frozen=True)
 class ReadFile:
-    """A file as it is kept: its products with geometry, where each is used, and its layers, which are ignored."""
+    """A file as it is kept: its products with geometry, where each is used, and its layers, which are ignored.
+
+    Beside them its parts that stand in other files, of which nothing is read here.
+    """
 
     parts: tuple[ReadPart, ...]
     uses: tuple[Use, ...]
     layers: tuple[str, ...]
+    elsewhere: tuple[PartElsewhere, ...] = ()
 
     @property
     def solids(self) -> "Solids":
@@ -151,6 +167,17 @@ class StepPart:
     def shell(self) -> Shell:
         """Its faces as numbers."""
         return _shell(self.body, self.file.faces)
+
+    @property
+    def threads(self) -> tuple[str, ...]:
+        """Threads that its name, or those of its tolerances and dimensions, state; its faces are plain cylinders."""
+        texts = [self.body.name, *(own.name for own in self.named if own.what != "datum")]
+        return tuple(dict.fromkeys(each for text in texts for each in THREAD.findall(text)))
+
+    @cached_property
+    def machined(self) -> Machined:
+        """Its features that several surfaces make."""
+        return Machined(self.features, lambda own, direction: self.shell.along(own.faces, direction))
 
     def mesh(self, deflection: float = DEFLECTION) -> FaceMesh:
         """Its solids as triangles, with the loose faces beside them; without faces that cannot be triangulated.
@@ -233,6 +260,11 @@ class StepFile:
         return self.read.uses
 
     @property
+    def elsewhere(self) -> tuple[PartElsewhere, ...]:
+        """Placed parts whose shapes stand in other files."""
+        return self.read.elsewhere
+
+    @property
     def layers(self) -> tuple[str, ...]:
         """Names of its layers, which nothing here heeds."""
         return self.read.layers
@@ -244,6 +276,10 @@ class StepFile:
             StepError: there is none.
         """
         found = next((use for use in self.uses if use.path == path), None)
+        if (other := next((own.file for own in self.read.elsewhere if own.use.path == path), None)) is not None:
+            raise StepError(
+                f"expected a use whose shape is in {self.name}, got {path!r}, which stands in {shown(other)!r}"
+            )
         if found is None:
             known = [use.path for use in self.uses]
             near = hint(path, known)
@@ -266,14 +302,19 @@ def read_step(content: FileContent) -> StepFile:
 
     def make() -> Arrays:
         text = read_step_text(content.content, content.path.name)
-        bodies = bodies_of(text.file, text.structure)
+        structure = text.structure
+        elsewhere = tuple(
+            PartElsewhere(_used(leaf), structure.elsewhere[leaf.product]) for leaf in structure.leaves_elsewhere
+        )
+        if elsewhere and not structure.leaves:
+            return _kept(ReadFile((), (), layers_of(text.file), elsewhere))
+        bodies = bodies_of(text.file, structure)
         faces, mesh = _geometry(content, bodies, text.file)
         named = tuple(named_in(text))
         parts = tuple(_read_part(text.file, body, faces, mesh, named) for body in bodies)
         own = {body.product for body in bodies}
-        uses = (Use("/".join(leaf.path), leaf.product, leaf.placement) for leaf in text.structure.leaves)
-        found = ReadFile(parts, tuple(use for use in uses if use.product in own), layers_of(text.file))
-        return {"read": np.frombuffer(READ.dump_json(found), dtype=np.uint8)}
+        uses = tuple(_used(leaf) for leaf in structure.leaves if leaf.product in own)
+        return _kept(ReadFile(parts, uses, layers_of(text.file), elsewhere))
 
     sources = sources_of(__name__)
     arrays = _cached(f"step-read-{_key(content, {'sources': sources})}.npz", make)
@@ -281,6 +322,14 @@ def read_step(content: FileContent) -> StepFile:
         return StepFile(content, READ.validate_json(arrays["read"].tobytes()))
     except (KeyError, ValidationError):
         raise StepError(f"{cache_folder()}: a cache entry was changed; delete the folder") from None
+
+
+def _used(leaf: Leaf) -> Use:
+    return Use("/".join(leaf.path), leaf.product, leaf.placement)
+
+
+def _kept(found: ReadFile) -> Arrays:
+    return {"read": np.frombuffer(READ.dump_json(found), dtype=np.uint8)}
 
 
 def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh | None, named: Sequence[Named]) -> ReadPart:

@@ -5,7 +5,7 @@ for assembly structure and for external references; ISO 10303-44.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
@@ -103,11 +103,13 @@ class Structure:
         name: the file's name, for errors.
         products: by `#id`, in the file's order.
         occurrences: in the file's order.
+        elsewhere: names of the files in which the shapes of products stand, as this file states them.
     """
 
     name: str
     products: dict[int, Product]
     occurrences: tuple[Occurrence, ...]
+    elsewhere: dict[int, str] = field(default_factory=dict)
 
     @cached_property
     def inside(self) -> dict[int, tuple[tuple[str, Occurrence], ...]]:
@@ -125,11 +127,21 @@ class Structure:
 
     @cached_property
     def leaves(self) -> tuple[Leaf, ...]:
-        """Every part as it stands in the file: a product used four times is four of them.
+        """Every part with a shape as it stands in the file: a product used four times is four of them.
 
         Raises:
             StepError: an assembly holds itself, or there are too many.
         """
+        return tuple(leaf for leaf in self.every_leaf if leaf.product not in self.elsewhere)
+
+    @property
+    def leaves_elsewhere(self) -> tuple[Leaf, ...]:
+        """Every part whose shape stands in another file; raises as `leaves`."""
+        return tuple(leaf for leaf in self.every_leaf if leaf.product in self.elsewhere)
+
+    @cached_property
+    def every_leaf(self) -> tuple[Leaf, ...]:
+        """The parts with a shape here or elsewhere; raises as `leaves`."""
         if self.products and not self.tops:
             raise StepError(f"{self.name}: every product is used in another: expected a top assembly")
         found: list[Leaf] = []
@@ -150,7 +162,7 @@ class Structure:
             leaf, holders, name = stack.pop()
             own = self.products[leaf.product]
             used = self.inside.get(leaf.product, ())
-            if own.faces:
+            if own.faces or own.id in self.elsewhere:
                 yield Leaf(leaf.path or (name,), leaf.occurrences, leaf.product, leaf.placement)
             for word, each in reversed(used):
                 if each.product in holders:
