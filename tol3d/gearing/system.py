@@ -26,6 +26,7 @@ from tol3d.gearing.play.play import breakdowns_of
 from tol3d.gearing.stack_up import closed_form, reference_form
 from tol3d.gearing.summary.backlash_stages import backlash_stages
 from tol3d.gearing.summary.train_sections import description, train_sections
+from tol3d.gearing.summary.types import BacklashLimits
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import kept
 from tol3d.scene import Scene
@@ -33,6 +34,7 @@ from tol3d.study.system import contributor as system_contributor
 from tol3d.study.system import measure as system_measure
 from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
+from tol3d.study.system.copula import INDEPENDENT, Copula
 from tol3d.study.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
 from tol3d.study.system.outcome import GEOMETRIC, Statuses
 from tol3d.study.system.pooled import PooledTerms
@@ -187,12 +189,27 @@ class GearSystem:
 
     # what it shows ----------------------------------------------------------------------------------
 
-    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
-        """See System: the trains with their stages, and what their links say of themselves."""
+    def sections(
+        self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published, copula: Copula = INDEPENDENT
+    ) -> Mapping[str, Any]:
+        """See System: limits of backlash, the trains with their stages, and what their links say of themselves."""
         exact = any(GEOMETRIC in own for own in terms.values())
-        limits = backlash_stages(self.model, GearSystem, EXACT if exact else ANALYTIC_METHOD)
+        limits = self.backlash_limits(EXACT if exact else ANALYTIC_METHOD, copula)
         found: dict[str, Any] = {"backlash": limits} if limits else {}
-        found |= {"trains": train_sections(self.model, terms, published)}
+        return found | self.train_sections(terms, published)
+
+    def backlash_limits(self, engine: str, copula: Copula = INDEPENDENT) -> Sequence[BacklashLimits]:
+        """Limits of the backlash of its meshes, those of planetary sets too, the worst by an engine."""
+        return [*backlash_stages(self.model, GearSystem, engine, copula), *self.backlash_limits_of_links(copula)]
+
+    def backlash_limits_of_links(self, copula: Copula) -> Sequence[BacklashLimits]:
+        """Limits of the backlash of the meshes of its links."""
+        links = self.model.links
+        return [own for link in links for own in link.backlash_limits(link_contributors(self.model, link.name), copula)]
+
+    def train_sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> dict[str, Any]:
+        """The same without limits of backlash."""
+        found: dict[str, Any] = {"trains": train_sections(self.model, terms, published)}
         for link in self.model.links:
             for section, own in link.sections(link_contributors(self.model, link.name)).items():
                 found[section] = {**found.get(section, {}), link.name: own}

@@ -174,6 +174,11 @@ class CylindricalPair(RollingPair):
         """Free turn of the pinion (wheel held) and of the wheel (pinion held) [rad]: j_bn / (r_b cos beta_b)."""
         return self.normal_backlash / self.pinion.section_arm, self.normal_backlash / self.wheel.section_arm
 
+    def further_with(self, normal: float) -> float:
+        """Further distance of the axes [mm] at which these teeth have a normal backlash [mm]."""
+        working = self.zero_backlash_involute + normal / (2 * self.base_radii * self.base_helix_cosine)
+        return self.iso_sign * self.base_radii / math.cos(inverse_involute(working)) - self.centre_distance
+
     def from_normal(self, normal: float, further: float = 0.0) -> "Backlashes":
         """A normal backlash [mm] of other teeth in all the words of drawings, the axes so much further apart [mm]."""
         distance, transverse = self.centre_distance + further, normal / self.base_helix_cosine

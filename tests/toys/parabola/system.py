@@ -13,6 +13,7 @@ from tol3d.scene import Scene
 from tol3d.study.system.breakdown import Breakdown, SumTerm
 from tol3d.study.system.closed_form import ClosedForm, Share
 from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.copula import INDEPENDENT, Copula
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Method, MethodKind
 from tol3d.study.system.outcome import Statuses
@@ -164,7 +165,9 @@ class ParabolaSystem:
 
     # what it shows ----------------------------------------------------------------------------------
 
-    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
+    def sections(
+        self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published, copula: Copula = INDEPENDENT
+    ) -> Mapping[str, Any]:
         """Each measure's terms, by method."""
         return {"terms": {name: {key: _terms(own) for key, own in found.items()} for name, found in terms.items()}}
 

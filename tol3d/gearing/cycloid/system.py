@@ -20,6 +20,7 @@ from tol3d.gearing.cycloid.reducer.trials import STATUSES, RVMethod, RVTrials
 from tol3d.gearing.reducers.trials import Solver
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.copula import INDEPENDENT, Copula
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import ANALYTIC_METHOD, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
@@ -102,7 +103,9 @@ class RVSystem(RVTrials):
     def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
         return neglected(self, self.read[measure.name], trials)
 
-    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
+    def sections(
+        self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published, copula: Copula = INDEPENDENT
+    ) -> Mapping[str, Any]:
         """Its cycloid stage by formula; see System."""
         found = stages_by_formula(self.own, self.acts, self.contributors)
         return {"cycloid_stages": found} if found else {}

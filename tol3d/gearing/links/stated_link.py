@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import KnownRows, kept
 from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.copula import Copula
 from tol3d.study.system.system import KeyPath
 
 
@@ -276,6 +277,10 @@ class StatedLink(ABC):
     def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
         """Its entries in summary.json, by section; see System.sections."""
         return {}
+
+    def backlash_limits(self, contributors: Sequence[Contributor], copula: Copula) -> Sequence[Any]:
+        """Limits of the backlash of its meshes, see summary/backlash_stages.py; most links have none."""
+        return ()
 
     def ends(self, contributors: Sequence[Contributor]) -> tuple[float, float] | None:
         """Ends of the play by the laws of its contributors [rad]; None if unknown."""

@@ -159,19 +159,21 @@ class Joined:
         return self._places(self.drawn_by_gears)
 
     @cached_property
+    def _drawn_by_assembly(self) -> Sequence[Contributor]:
+        """The assembly's contributors that are drawn: not those that only link it and the gears."""
+        own = {contributor.name for contributor in self.contributors}
+        return [contributor for contributor in self.drawn.contributors if contributor.name in own]
+
+    @cached_property
     def assembly_places(self) -> NDArray[np.intp]:
         """Indices of the columns of the assembly's contributors, of those that are drawn."""
-        return self._places([contributor for contributor in self.drawn.contributors if not is_hidden(contributor)])
+        return self._places(self._drawn_by_assembly)
 
     @cached_property
     def _drawn_columns(self) -> NDArray[np.intp]:
         """Columns of the assembly that are drawn."""
         slices = component_slices(self.drawn)
-        ranges = [
-            np.arange(*slices[contributor.name].indices(1 << 30))
-            for contributor in self.drawn.contributors
-            if not is_hidden(contributor)
-        ]
+        ranges = [np.arange(*slices[contributor.name].indices(1 << 30)) for contributor in self._drawn_by_assembly]
         return np.concatenate([*ranges, np.zeros(0)]).astype(np.intp)
 
     def of_assembly(self, deviations: Array) -> Array:

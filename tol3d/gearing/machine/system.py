@@ -19,12 +19,15 @@ from tol3d.gearing.machine.open_chains import HALF, JointDrive
 from tol3d.gearing.machine.regressors import parts_by_links, regress_bores, with_displacements
 from tol3d.gearing.machine.statuses import STATUSES, WITH_CLEARANCES, WITH_LOOPS
 from tol3d.gearing.model.measure import Measure as GearMeasure
+from tol3d.gearing.summary.backlash_stages import CENTRE_DISTANCE, OPERATING, Staged, limits_of_meshes
+from tol3d.gearing.summary.types import BacklashLimits
 from tol3d.gearing.system import EXACT, METHODS, GearSystem
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import kept
 from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.copula import INDEPENDENT, Copula
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
@@ -33,10 +36,16 @@ from tol3d.study.system.positions import Positions
 from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import Columns, KeyPath, Published, StreamKey
 from tol3d.study.system.trials import Trials
+from tol3d.study.trials.simulation import Simulation
 
 
 def _joined(every: Sequence[Mapping[str, Array]]) -> Sequence[str]:
     return list(dict.fromkeys(words for own in every for words in own))
+
+
+def no_closed_form(simulation: Simulation, measure: Measure) -> None:
+    """None: of axes that lean draws are known sooner than integrals over the laws of all bores."""
+    return
 
 
 @dataclass(frozen=True, eq=False)
@@ -362,9 +371,28 @@ class MachineSystem(Joined):
 
     # what it shows ----------------------------------------------------------------------------------
 
-    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
+    def sections(
+        self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published, copula: Copula = INDEPENDENT
+    ) -> Mapping[str, Any]:
         """See System."""
-        return self.gears.sections(terms, published)
+        limits = self.backlash_limits(copula)
+        found: dict[str, Any] = {"backlash": limits} if limits else {}
+        return found | self.gears.train_sections(terms, published)
+
+    def backlash_limits(self, copula: Copula = INDEPENDENT) -> Sequence[BacklashLimits]:
+        """Limits of the backlash of its meshes, whose distances the bores decide; the worst by the analytic method."""
+        temperatures = {own.name for own in self.contributors if own.kind in OPERATING}
+        bores = {own.name for own in self.drawn.contributors} - temperatures
+        own = frozenset(own.name for own in self.gears.contributors if own.kind == CENTRE_DISTANCE)
+        staged = Staged(self, self.only, ANALYTIC_METHOD, frozenset(bores) | own, copula, no_closed_form)
+        return [*limits_of_meshes(self.gears.model.meshes, staged), *self.gears.backlash_limits_of_links(copula)]
+
+    def only(self, kept: Sequence[Contributor], measure: GearMeasure) -> "MachineSystem":
+        """The same with some of its contributors, those left out being nominal, and one backlash."""
+        names = {contributor.name for contributor in kept}
+        own = [contributor for contributor in self.drawn_by_gears if contributor.name in names]
+        model = replace(self.gears.model, contributors=(*own, *self.displacements), measures=(measure,))
+        return replace(self, contributors=tuple(kept), measures=(measure,), gears=GearSystem(model))
 
     def display(self, trials: Trials, method: Method) -> Any:
         """See System: the seated meshes of the gears."""

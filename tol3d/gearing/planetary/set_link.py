@@ -9,6 +9,7 @@ from typing_extensions import override
 
 from tol3d.gearing.links import LinkTrials
 from tol3d.gearing.model.brought import Brought
+from tol3d.gearing.planetary.backlash import set_backlash
 from tol3d.gearing.planetary.exact.contact import Contact
 from tol3d.gearing.planetary.exact.shown import Made, ShownSet, heights_of, made_gears, shown_set
 from tol3d.gearing.planetary.first_order.stack_up import StackUp
@@ -22,10 +23,12 @@ from tol3d.gearing.planetary.summary_types import PlanetarySetSummary
 from tol3d.gearing.planetary.trials import SetTrials
 from tol3d.gearing.reducers.deviations import Acts
 from tol3d.gearing.reducers.link import UNFOLLOWED, Actions, Lost, ReducerLink
+from tol3d.gearing.summary.types import BacklashLimits
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.programme import NO_ROOM
 from tol3d.scene import Scene
 from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.copula import Copula
 from tol3d.study.system.system import KeyPath
 
 
@@ -98,6 +101,10 @@ class SetLink(ReducerLink):
     def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
         """Efficiencies, where the friction of its teeth is given; see StatedLink."""
         return {"planetary_sets": self.summaries[self.name]} if self.summaries else {}
+
+    @override
+    def backlash_limits(self, contributors: Sequence[Contributor], copula: Copula) -> Sequence[BacklashLimits]:
+        return set_backlash(self.own, self.made, contributors, self.acts, copula)
 
     @property
     def summaries(self) -> Mapping[str, PlanetarySetSummary]:

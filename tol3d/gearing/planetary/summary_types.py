@@ -6,10 +6,10 @@ from typing import Final, Literal, Self
 from pydantic import Field, model_validator
 from typing_extensions import override
 
+from tol3d.gearing.summary.types import BacklashOfRun
 from tol3d.strict import refused
 from tol3d.study.runs.summary.kinds import SummaryKinds
 from tol3d.study.runs.summary.measure import OutputMeasureSummary
-from tol3d.study.runs.summary.run import RunSummary
 from tol3d.study.runs.summary.values import LEFT_OUT, Label, Maybe, Number, Numbers, Section
 
 
@@ -97,8 +97,8 @@ class PlanetarySetSummary(Section):
     spring: Maybe[SpringSummary] = LEFT_OUT
 
 
-class PlanetaryOfRun(RunSummary):
-    """The planetary sets of a run with a stated friction or spring."""
+class PlanetaryOfRun(BacklashOfRun):
+    """The backlash of meshes, and the planetary sets of a run with a stated friction or spring."""
 
     planetary_sets: Maybe[Mapping[Label, PlanetarySetSummary]] = LEFT_OUT
 

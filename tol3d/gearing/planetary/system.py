@@ -10,6 +10,7 @@ import numpy as np
 from typing_extensions import override
 
 from tol3d.cad.solids import measuring_strips
+from tol3d.gearing.planetary.backlash import set_backlash
 from tol3d.gearing.planetary.exact.shown import Made, ShownSet, shown_set
 from tol3d.gearing.planetary.first_order.stack_up import StackUp
 from tol3d.gearing.planetary.model.deviated import Deviated
@@ -19,8 +20,10 @@ from tol3d.gearing.planetary.spring_curve import LeafSpring
 from tol3d.gearing.planetary.summary_types import PlanetarySetSummary
 from tol3d.gearing.planetary.trials import STATUSES, PlanetaryMethod, SetTrials
 from tol3d.gearing.reducers.trials import ReducerMeasure
+from tol3d.gearing.summary.types import BacklashLimits
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.copula import INDEPENDENT, Copula
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import ANALYTIC_METHOD, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
@@ -96,9 +99,17 @@ class PlanetarySystem(SetTrials):
         own = self.read[measure.name]
         self.regress_slopes(own, contributors, columns, rows, partial(slopes_of, self, own))
 
-    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
-        """Efficiencies and torques of the set, where friction or a spring is given; see System."""
-        return {"planetary_sets": self.summaries} if self.summaries else {}
+    def sections(
+        self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published, copula: Copula = INDEPENDENT
+    ) -> Mapping[str, Any]:
+        """Limits of backlash; efficiencies and torques of the set, where friction or a spring is given; see System."""
+        limits = self.backlash_limits(copula)
+        found: dict[str, Any] = {"backlash": limits} if limits else {}
+        return found | ({"planetary_sets": self.summaries} if self.summaries else {})
+
+    def backlash_limits(self, copula: Copula = INDEPENDENT) -> Sequence[BacklashLimits]:
+        """Limits of the backlash of its meshes."""
+        return set_backlash(self.own, self.made, self.contributors, self.acts, copula)
 
     @cached_property
     def summaries(self) -> Mapping[str, PlanetarySetSummary]:

@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from tol3d.gearing.summary.types import TrainsOfRun
+from tol3d.gearing.summary.types import BacklashOfRun, TrainsOfRun
 from tol3d.report.presenter import ShowsBuilds
 from tol3d.study.runs.summary.measure import MeasureSummary
 from tol3d.study.runs.summary.run import RunSummary
@@ -34,7 +34,7 @@ class GearPresenter(ShowsBuilds):
 
     def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
         """Limits of backlash, tables of every train, and those of its links."""
-        limits = (summary.backlash or ()) if isinstance(summary, TrainsOfRun) else ()
+        limits = (summary.backlash or ()) if isinstance(summary, BacklashOfRun) else ()
         backlash = _lazily("drawing_sizes").backlash_table(limits)
         return (
             *backlash,

@@ -21,7 +21,6 @@ from tol3d.gearing.model.trains import gravity_torque
 from tol3d.gearing.presenting.coefficient_tables import coefficients_tables
 from tol3d.gearing.presenting.drawing_sizes import backlash_table, drawing_sizes
 from tol3d.gearing.presenting.shown_train import link_blocks
-from tol3d.gearing.summary.backlash_stages import backlash_stages
 from tol3d.gearing.summary.measure_words import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
 from tol3d.gearing.system import EXACT, GearSystem, gear_model
 from tol3d.gears import (
@@ -137,10 +136,10 @@ def check_blocks(simulation: Simulation) -> list[PageItem]:
     Links that compare load paths have no coefficients; a scene with such links is shown as any system is.
     """
     model = gear_model(simulation.system)
-    if any(link.compares for link in model.links):
-        return [*link_blocks(model), *mechanics_blocks(model), *system_blocks(simulation)]
     engine = ANALYTIC_METHOD if simulation.study.engine == ANALYTIC_METHOD else EXACT
-    backlash = backlash_table(backlash_stages(model, GearSystem, engine))
+    backlash = backlash_table(GearSystem(model).backlash_limits(engine, simulation.copula))
+    if any(link.compares for link in model.links):
+        return [*link_blocks(model), *mechanics_blocks(model), *backlash, *system_blocks(simulation)]
     blocks = [*link_blocks(model), *mechanics_blocks(model), *backlash, *measures_table(model)]
     return [*blocks, *(contributors_table(model) if model.contributors else ()), *worst_blocks(simulation)]
 

@@ -301,10 +301,15 @@ class BacklashLimits(Section):
     largest_3sigma_um: Annotated[Known, Shows("mean + 3 σ [µm]", ".1f")]
 
 
-class TrainsOfRun(RunSummary):
-    """The trains and the backlash of meshes of a run."""
+class BacklashOfRun(RunSummary):
+    """The backlash of meshes of a run."""
 
     backlash: Maybe[list[BacklashLimits]] = LEFT_OUT
+
+
+class TrainsOfRun(BacklashOfRun):
+    """The trains and the backlash of meshes of a run."""
+
     trains: Maybe[Mapping[Label, TrainSummary]] = LEFT_OUT
 
     @model_validator(mode="after")

@@ -48,7 +48,7 @@ def described(simulation: Simulation, tally: Tally, found: Findings) -> dict[str
     whole = dict(found.items()) | {"measures": measures}
     whole |= {key: {**dict(whole[key].items()), **options} for key in ("study", "witness") if key in whole}
     behind = [*whole].index("measures") + 1
-    sections = system.sections(tally.terms, simulation.published)
+    sections = system.sections(tally.terms, simulation.published, simulation.copula)
     return {**dict([*whole.items()][:behind]), **sections, **dict([*whole.items()][behind:])}
 
 

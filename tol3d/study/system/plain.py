@@ -21,6 +21,7 @@ from tol3d.statistics.distributions import DeviationLaw, Distribution
 from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.contributor import Contributor, column_names
+from tol3d.study.system.copula import INDEPENDENT, Copula
 from tol3d.study.system.draw import Draw, Scalar
 from tol3d.study.system.faults import UnfitError
 from tol3d.study.system.measure import Measure, Worse
@@ -325,7 +326,9 @@ class PlainSystem:
         """Nothing of first order."""
         return {}
 
-    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
+    def sections(
+        self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published, copula: Copula = INDEPENDENT
+    ) -> Mapping[str, Any]:
         """None."""
         return {}
 

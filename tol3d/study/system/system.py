@@ -11,6 +11,7 @@ from tol3d.scene.published import PublishedColumn
 from tol3d.study.system.breakdown import Breakdown
 from tol3d.study.system.closed_form import ClosedForm
 from tol3d.study.system.contributor import Contributor
+from tol3d.study.system.copula import INDEPENDENT, Copula
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Method, MethodKind
 from tol3d.study.system.outcome import Statuses
@@ -159,8 +160,16 @@ class Theory(Protocol):
 class Shown(Protocol):
     """Presentation of a system's results."""
 
-    def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
-        """Further sections of summary.json, from the pooled terms of each breakdown by measure and method."""
+    def sections(
+        self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published, copula: Copula = INDEPENDENT
+    ) -> Mapping[str, Any]:
+        """Further sections of summary.json, from the pooled terms of each breakdown by measure and method.
+
+        Args:
+            terms: of the breakdowns.
+            published: columns of others.
+            copula: which contributors are correlated.
+        """
         ...
 
     def display(self, trials: Trials, method: Method) -> Any:

@@ -10,6 +10,7 @@ from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.gearing.machine.bores import Bores
 from tol3d.gearing.machine.nominal import HousedShaft
 from tol3d.gearing.machine.system import MachineSystem
+from tol3d.gearing.presenting.drawing_sizes import backlash_table
 from tol3d.gearing.presenting.scene_check import mechanics_blocks
 from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, note, titled
@@ -26,7 +27,8 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     assert isinstance(system, MachineSystem)
     shafts, gears = shafts_table(system.bores), mechanics_blocks(system.gears.model)
     parts = {measure.name for measure in system.drawn.measures}
-    return (*drawing_blocks(system.drawn), *shafts, *gears, *system_blocks(simulation, parts))
+    backlash = backlash_table(system.backlash_limits(simulation.copula))
+    return (*drawing_blocks(system.drawn), *shafts, *gears, *backlash, *system_blocks(simulation, parts))
 
 
 def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Draw, Which
     from tol3d.study.runs.run import Run
+    from tol3d.study.trials.simulation import Simulation
 
 
 class PlanetaryPresenter(ReducerPresenter):
@@ -30,6 +31,10 @@ class PlanetaryPresenter(ReducerPresenter):
     def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
         """Efficiencies and torques of the set; of former versions also tables of a train around it."""
         return (*super().sections(summary), *self.link_sections(summary))
+
+    def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
+        """Data of the set, the backlash of its meshes, then the items of any system."""
+        return import_module(self.tables).check_blocks(simulation)  # type: ignore[no-any-return]
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its gears placed again; of former versions a train around the set too."""

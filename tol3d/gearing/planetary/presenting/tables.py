@@ -11,12 +11,15 @@ from tol3d.gearing.planetary.model.set_mesh import SetMesh
 from tol3d.gearing.planetary.set_link import SetLink
 from tol3d.gearing.planetary.summary_types import PlanetaryOfRun, PlanetarySetSummary
 from tol3d.gearing.planetary.system import PlanetarySystem
+from tol3d.gearing.presenting.drawing_sizes import backlash_table
 from tol3d.gearing.reducers.shown import gear_sizes
 from tol3d.report.declared import declared_table, side_by_side
 from tol3d.report.page import PageItem, Shown, line, note, titled
+from tol3d.report.system_check import system_blocks
 from tol3d.study.runs.summary.run import RunSummary
 from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
 from tol3d.study.system.contributor import Contributor
+from tol3d.study.trials.simulation import Simulation
 
 
 def blocks(reducer: PlanetarySystem | SetLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
@@ -31,6 +34,14 @@ def blocks(reducer: PlanetarySystem | SetLink, contributors: Sequence[Contributo
         *set_blocks(reducer.summaries),
         *gear_sizes(reducer.made, reducer.acts, contributors),
     )
+
+
+def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
+    """Data of a set alone, the backlash of its meshes, then the items of any system."""
+    system = simulation.system
+    assert isinstance(system, PlanetarySystem)
+    backlash = backlash_table(system.backlash_limits(simulation.copula))
+    return (*blocks(system, system.contributors), *backlash, *system_blocks(simulation))
 
 
 class MeshRow(RowOf[SetMesh]):
