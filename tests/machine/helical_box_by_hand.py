@@ -188,6 +188,13 @@ PER_FIRST: Final = SECOND.driver.teeth / SECOND.driven.teeth / (FIRST.driven.bas
 PER_SECOND: Final = 1 / (SECOND.driven.base * SECOND.cosine)
 """Turn of the output by the normal backlash of each stage [rad/mm]."""
 
+SLIDING: Final = {
+    "input": abs(FIRST.driven.twist) * SECOND.driver.teeth / SECOND.driven.teeth,
+    "middle": abs(FIRST.driven.twist - SECOND.driver.twist) * SECOND.driver.teeth / SECOND.driven.teeth,
+    "output": abs(SECOND.driven.twist),
+}
+"""Turn of the output by the axial play of each shaft [rad/mm]: the thrust of a mesh moves what slides as it yields."""
+
 
 def limits(tolerance: str) -> tuple[float, float]:
     """Lower and upper limit of a distribution."""
@@ -277,9 +284,10 @@ def by_involutes(columns: Columns, stage: Stage) -> Array:
     return np.asarray(free - lost(columns, stage, slopes))
 
 
-def lost_motion(first: Array, second: Array) -> Array:
-    """Free turn of the output [rad] by the normal backlashes of both stages (trials,)."""
-    return np.asarray(PER_FIRST * first + PER_SECOND * second)
+def lost_motion(columns: Columns, first: Array, second: Array) -> Array:
+    """Free turn of the output [rad] by the normal backlashes of both stages, and by shafts that slide (trials,)."""
+    plays = sum(rate * columns[f"{shaft} axial play [um]"] / 1000 for shaft, rate in SLIDING.items())
+    return np.asarray(PER_FIRST * first + PER_SECOND * second + plays)
 
 
 def own_draws(count: int, seed: int) -> dict[str, Array]:
@@ -295,6 +303,8 @@ def own_draws(count: int, seed: int) -> dict[str, Array]:
             case "position":
                 for end in ("start", "end"):
                     add(f"{name}.{end} ", in_disc(draws, count, number(said["zone"]["diameter"]) / 2))
+            case "axial_play":
+                found[f"{name} [um]"] = 1000 * draws.uniform(*limits(name), count)
             case "bearing_clearance":
                 length, angle = draws.uniform(*limits(name), count), 2 * math.pi * draws.random(count)
                 add(f"{name}.", np.stack([length * np.cos(angle), length * np.sin(angle)], axis=1))

@@ -9,19 +9,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 from machine.arm_by_hand import AXES, POSES, TOOL, arm_scene, errors, system_of, tool_by_hand
+from machine.box_by_hand import number
 from machine.helical_box_by_hand import (
+    ALPHA,
+    APART,
     FIRST,
     GEARS,
+    IRON,
+    SAID,
     SECOND,
+    SPAN,
     STAGES,
+    STEEL,
     Stage,
     by_involutes,
+    limits,
     lost_motion,
     nominal,
     own_draws,
     to_first_order,
 )
 from machine.housed import gearbox_of, values
+from machine.mean_lean import mean_size
 from numpy.typing import NDArray
 from places import SCENES
 
@@ -34,6 +43,9 @@ SCENE = SCENES / "helical_gearbox.yaml"
 TEXT = SCENE.read_text("utf-8")
 TRIALS = 4_000
 ARCMIN = 60 * 180 / math.pi
+MIDDLE = ("middle", "far middle")
+BORES = {"first stage": ("far input", *MIDDLE), "second stage": (*MIDDLE, "output", "far output")}
+"""Toleranced bores of the shafts of each stage."""
 
 
 @pytest.fixture(scope="module")
@@ -76,14 +88,31 @@ def test_backlashes_follow_from_the_columns_of_the_run(measure: str, run: Run) -
 
 
 def test_lost_motion_is_that_of_both_stages_over_the_ratio(run: Run) -> None:
-    """j_bn/(r_b cos(beta_b)) of each, the first one times 23/34."""
+    """j_bn/(r_b cos(beta_b)) of each, the first one times 23/34; c |kappa_in - kappa_out| of shafts that slide."""
     columns = run.columns()
     summed, rolled = (
-        ARCMIN * lost_motion(own(columns, FIRST), own(columns, SECOND)) for own in (to_first_order, by_involutes)
+        ARCMIN * lost_motion(columns, own(columns, FIRST), own(columns, SECOND))
+        for own in (to_first_order, by_involutes)
     )
     np.testing.assert_allclose(columns["analytic:lost motion"], summed, rtol=0, atol=1e-9)
     # the arm of two eccentric gears is another by e/a
     np.testing.assert_allclose(columns["geometric:lost motion"], rolled, rtol=0, atol=0.03)
+
+
+@pytest.mark.parametrize(("measure", "lost"), [("first normal backlash", 2.4583), ("second normal backlash", 4.2680)])
+def test_the_closed_form_has_the_exact_mean(measure: str, lost: float, run: Run) -> None:
+    """Thinner teeth, warmth, and what leaning shafts lose: both flanks E|f| times the mean end of a contact line."""
+    stage = STAGES[measure]
+    radii = [number(SAID["tolerances"][f"{own} bore position"]["zone"]["diameter"]) / 2 for own in BORES[stage.name]]
+    rings = [limits(f"{far}{shaft} bearing clearance") for shaft in stage.shafts for far in ("", "far ")]
+    half = 0.5 / SPAN
+    lean = mean_size([(half, radius) for radius in (*radii, *radii)], [(half, *own) for own in rings])
+    assert 2 * lean * stage.mean_line_end() == pytest.approx(lost / 1000, abs=1e-7)
+    warm = stage.opening * APART * (30 * IRON - 45 * STEEL)
+    thin = -math.cos(ALPHA) * sum(sum(gear.thickness) / 2 for gear in (stage.driver, stage.driven))
+    form = run.summary["measures"][measure]["analytic_closed_form"]
+    expected = 1000 * (nominal(stage) + thin + warm) - lost
+    assert form["mean"] == pytest.approx(expected, abs=1e-3 * form["sigma"])
 
 
 def test_means_and_sigmas_are_those_of_other_draws(run: Run) -> None:
@@ -91,7 +120,7 @@ def test_means_and_sigmas_are_those_of_other_draws(run: Run) -> None:
     count = 100_000
     columns = own_draws(count, 11)
     drawn = {name: 1000 * to_first_order(columns, stage) for name, stage in STAGES.items()}
-    drawn["lost motion"] = ARCMIN / 1000 * lost_motion(*drawn.values())
+    drawn["lost motion"] = ARCMIN * lost_motion(columns, *(own / 1000 for own in drawn.values()))
     for name, own in drawn.items():
         summary = run.summary["measures"][name]["analytic"]
         assert summary["mean"] == pytest.approx(own.mean(), abs=4 * own.std() * math.sqrt(1 / TRIALS + 1 / count))

@@ -36,6 +36,7 @@ from tol3d.gearing.machine.pins import displacement_name, pins_of, with_bores, w
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Model
+from tol3d.gearing.summary.backlash_stages import BY_BORES
 from tol3d.gearing.system import GearSystem, gear_system
 from tol3d.scene import Scene, Vocabulary
 from tol3d.scene.implausible import warned
@@ -46,8 +47,6 @@ from tol3d.study.system.draw import Planar
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.plain import stated_of
 from tol3d.study.system.stated import component_slices
-
-KIND = "shaft_in_bores"
 
 
 def machine_system(scene: Scene) -> MachineSystem:
@@ -213,7 +212,7 @@ def _by_bores(model: Model, bores: Bores) -> Iterator[Contributor]:
         for k in range(2):
             yield Contributor(
                 name=displacement_name(shaft, k),
-                kind=KIND,
+                kind=BY_BORES,
                 effect=_effect(model, shaft, k, places),
                 draw=Planar(Constant(0.0), None),
                 unit="um",

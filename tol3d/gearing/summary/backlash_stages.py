@@ -36,6 +36,8 @@ STAGES: Final[tuple[Stage, ...]] = get_args(Stage)
 CENTRE_DISTANCE: Final = "centre_distance"
 THEORETICAL: Final = frozenset({"tooth_thickness", CENTRE_DISTANCE})
 OPERATING: Final = frozenset({"temperature"})
+BY_BORES: Final = "shaft_in_bores"
+"""Kind of contributors that stand for the bores of a shaft, of which a model of gears knows no tolerance."""
 DRAWS: Final = 16_384
 """Of stages whose moments have no closed form: 3 sigma to 0.6 %."""
 
@@ -45,6 +47,8 @@ SystemOf = Callable[[Model], System]
 
 def backlash_stages(model: Model, system_of: SystemOf, engine: str) -> list[BacklashLimits]:
     """Limits of the backlash of meshes on parallel axes in which thickness or centre distance has a tolerance.
+
+    None of gears in a housing, whose centre distance the bores decide.
 
     Args:
         model: of the gears.
@@ -71,7 +75,10 @@ def _rows(mesh: str, stage: Stage, limits: Sequence[Backlashes | None]) -> Itera
 def _stages(model: Model, measure: Measure) -> Iterator[tuple[Stage, Model]]:
     """Models with the contributors of each stage that has some of its own, and of those before it."""
     by_stage: dict[Stage, list[Contributor]] = {stage: [] for stage in STAGES}
-    for own in acting(model, measure):
+    every = acting(model, measure)
+    if any(own.kind == BY_BORES for own in every):
+        return
+    for own in every:
         by_stage[_stage(own)].append(own)
     kept = list[Contributor]()
     for stage, added in by_stage.items() if by_stage["theoretical"] else ():
