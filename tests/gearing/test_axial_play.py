@@ -6,8 +6,9 @@ of their plays, and against numbers that follow by hand.
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,9 @@ from tol3d.errors import SceneError
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model import Model, Reading
+from tol3d.gearing.raceways import DeepGroove, ObliqueContact
 from tol3d.gearing.slopes.sensitivity import sensitivities
+from tol3d.gearing.stack_up import closed_form
 from tol3d.study.system.trials import Trials
 
 ARCMIN = 10800 / math.pi  # in a radian
@@ -389,7 +392,7 @@ def test_a_second_axial_play_of_a_shaft_is_refused(tmp_path: Path) -> None:
     assert measure_of(model_of_scene(path), "lost").kind.sliding == {"two"}
     second = "  again: {kind: axial_play, of: left, distribution: {kind: constant, value: 10 um}}\nmoves:"
     path.write_text(text.replace("moves:", second))
-    with pytest.raises(SceneError, match="expected one axial play of 'two', got another one beside 'two play'"):
+    with pytest.raises(SceneError, match="expected one axial play of 'two', got another draw of it beside 'two play'"):
         model_of_scene(path)
 
 
@@ -428,6 +431,165 @@ study: {trials: 10, seed: 1}
     (path := tmp_path / "bevel.yaml").write_text(text)
     with pytest.raises(SceneError, match=r"tolerances\.play\.of: expected a shaft without bevel gears"):
         model_of_scene(path)
+
+
+# one clearance of a bearing, across its axis and along it -------------------------------------------------------------
+
+
+def longest_way(fits: Callable[[float], bool], most: float) -> float:
+    """Largest shift from the middle that still fits [mm], by halving."""
+    low, high = 0.0, most
+    for _ in range(60):
+        low, high = ((low + high) / 2, high) if fits((low + high) / 2) else (low, (low + high) / 2)
+    return low
+
+
+def test_balls_in_deep_grooves_touch_where_two_circles_hold_one() -> None:
+    """A ball fits where its centre lies within both grooves' circles less its radius: tried at 2000 places."""
+    ball, inner, outer, radial = 7.938, 0.515 * 7.938, 0.53 * 7.938, 0.014
+    across = inner + outer - ball - radial / 2  # of the centres of curvature, the rings centred
+
+    def fits(shift: float) -> bool:
+        """The ball's centre between the grooves' centres, at the best share of the way."""
+        way = math.hypot(across, shift)
+        shares = np.linspace(0.0, 1.0, 20001)
+        return bool(np.any((shares * way <= inner - ball / 2) & ((1 - shares) * way <= outer - ball / 2)))
+
+    axial = 2 * longest_way(fits, 1.0)
+    grooves = DeepGroove((0.515 + 0.53 - 1.0) * ball)
+    found = float(grooves.axial(np.array([radial]))[0])
+    assert found == pytest.approx(axial, rel=5e-3)  # the best share is met within 1/20000 of 0.36 mm, of slack 7 um
+    assert found == pytest.approx(2 * math.sqrt(0.35721**2 - 0.35021**2), abs=1e-6)
+    back = np.array([-0.01, 0.0, 0.004, 0.05])
+    assert grooves.measured(grooves.deviation(back)) == pytest.approx(back, abs=1e-15)
+    step = 1e-7
+    slope = (grooves.axial(np.array([radial + step])) - grooves.axial(np.array([radial - step]))) / (2 * step)
+    assert grooves.slope(np.array([radial])) == pytest.approx(slope, rel=1e-6)
+    assert grooves.slope(np.array([-0.01])) == grooves.axial(np.array([-0.01])) == 0.0
+
+
+def test_oblique_rows_touch_where_their_gap_is_closed() -> None:
+    """Two rows facing each other: every one of four contacts keeps r cos(alpha) + a sin(alpha) below the gap."""
+    alpha, gap = math.radians(15.0), 0.003
+
+    def fits(across: float, along: float) -> bool:
+        signs = product((1.0, -1.0), repeat=2)
+        return all(s * across * math.cos(alpha) + t * along * math.sin(alpha) <= gap for s, t in signs)
+
+    radial, axial = 2 * longest_way(lambda r: fits(r, 0.0), 1.0), 2 * longest_way(lambda a: fits(0.0, a), 1.0)
+    bearing = ObliqueContact(alpha)
+    assert bearing.axial(np.array([radial])) == pytest.approx([axial], rel=1e-12)
+    assert bearing.deviation(np.array([axial])) == pytest.approx([radial], rel=1e-12)
+    assert bearing.slope(np.array([radial])) == pytest.approx([axial / radial], rel=1e-12)
+
+
+TAPER, GROOVES = "contact_angle: 15 deg", "grooves: {ball: 7.938 mm, radii: 1.045}"
+AXIAL_OF = {TAPER: 0.014 / math.tan(math.radians(15.0)), GROOVES: 2 * math.sqrt(0.35721**2 - 0.35021**2)}
+
+
+def per_axial(gears: Mapping[str, Helical]) -> float:
+    """Turn of the output [rad] per mm of play of the middle shaft."""
+    left, right = (gears[name].hand * math.tan(gears[name].helix) / gears[name].radius for name in ("B", "C"))
+    return abs(left - right) * 19 / 53
+
+
+def with_bearing(raceways: str, clearance: str, folder: Path, beside: str = "") -> Model:
+    """A chain whose middle shaft lies in a bearing, and in another one that holds it still."""
+    path = folder / "chain.yaml"
+    chain(two_stages((1, -1)), TWO, plays(), folder)
+    at = ", ".join(own for own in ("kind: bearing", "shaft: two", "at: -20 mm", raceways) if own)
+    bearings = (
+        f"  fixed: {{{at}}}\n  loose: {{kind: bearing, shaft: two, at: 50 mm}}\ntolerances:\n{clearance}\n{beside}"
+    )
+    path.write_text(path.read_text().replace("tolerances:", bearings))
+    return model_of_scene(path)
+
+
+def sliding(of: str, play: str) -> str:
+    return f"  along: {{kind: axial_play, of: {of}, distribution: {{kind: constant, value: {play}}}}}"
+
+
+def clearance(direction: str, law: str, measured: str = "radial") -> str:
+    words = f"measured: {measured}, distribution: {{kind: {law}}}"
+    mesh = "mesh: first, " if direction == "apart" else ""
+    return f"  play: {{kind: bearing_clearance, of: fixed, direction: {direction}, {mesh}{words}}}"
+
+
+@pytest.mark.parametrize("raceways", [TAPER, GROOVES])
+@pytest.mark.parametrize("direction", ["apart", "{at: 70 deg}"])
+def test_one_clearance_of_a_bearing_is_radial_and_axial_at_once(raceways: str, direction: str, tmp_path: Path) -> None:
+    """As a radial clearance and an axial play that are typed apart, of that size."""
+    one = with_bearing(raceways, clearance(direction, "constant, value: 14 um"), tmp_path)
+    play = sliding("fixed", f"{AXIAL_OF[raceways]!r} mm")
+    two = with_bearing("", clearance(direction, "constant, value: 14 um"), tmp_path, play)
+    axial = f"constant, value: {AXIAL_OF[raceways]!r} mm"
+    measured = with_bearing(raceways, clearance(direction, axial, "axial"), tmp_path)
+    radial = with_bearing("", clearance(direction, "constant, value: 14 um"), tmp_path)
+    assert lost(one) == pytest.approx(lost(two), abs=1e-9)
+    assert lost(measured) == pytest.approx(lost(one), abs=1e-9)
+    turned = AXIAL_OF[raceways] * per_axial(two_stages((1, -1)))
+    assert np.subtract(lost(one), lost(radial)) == pytest.approx([turned] * 2, abs=1e-9)
+
+
+@pytest.mark.parametrize("raceways", [TAPER, GROOVES])
+def test_of_a_random_direction_the_length_of_a_clearance_lets_the_shaft_slide(raceways: str, tmp_path: Path) -> None:
+    law = "uniform, lower: 4 um, upper: 20 um"
+    model = with_bearing(raceways, clearance("random", law), tmp_path)
+    plain = with_bearing("", clearance("random", law), tmp_path)
+    trials, same = (drawn_trials(own, 1, 0, 20) for own in (model, plain))
+    assert np.array_equal(trials.deviations, same.deviations)
+    ours, theirs = (gear_columns(own, exact_engine(own), trials) for own in (model, plain))
+    per, columns = per_axial(two_stages((1, -1))), model.component_slices["play"]
+
+    def turned(deviations: np.ndarray) -> np.ndarray:
+        length = np.hypot(*deviations.T)
+        if raceways == TAPER:
+            return np.asarray(per * length / math.tan(math.radians(15.0)))
+        return np.asarray(per * np.sqrt(length * (4 * 0.35721 - length)))
+
+    own = trials.deviations[:, columns]
+    for method in ("geometric:lost", "analytic:lost"):
+        assert (ours[method] - theirs[method]) / ARCMIN == pytest.approx(turned(own), abs=1e-12)
+    assert closed_form(model, measure_of(model, "lost")) is None
+    rates, still = (
+        sensitivities(each, ExactEngine(each), trials, measure_of(each, "lost"))[:, columns] for each in (model, plain)
+    )
+    for k, step in enumerate(1e-7 * np.eye(2)):
+        slope = (turned(own + step) - turned(own - step)) / 2e-7
+        assert (rates - still)[:, k] == pytest.approx(slope, rel=1e-5, abs=1e-9)
+
+
+def test_the_closed_form_of_a_taper_bearing_has_its_shift_its_lean_and_its_slide(tmp_path: Path) -> None:
+    """Its moments are those of many trials by the analytic method."""
+    law, count = "normal, lower: 4 um, upper: 20 um", 20_000
+    model = with_bearing(TAPER, clearance("apart", law), tmp_path)
+    form, trials = form_of(model, "lost"), drawn_trials(model, 7, 0, count)
+    values = gear_columns(model, None, trials)["analytic:lost"] / ARCMIN
+    assert "play" in form.leaning
+    assert values.mean() == pytest.approx(form.mean, abs=5 * form.sigma / math.sqrt(count))
+    assert values.std() == pytest.approx(form.sigma, rel=5 / math.sqrt(2 * count))
+    plain = form_of(with_bearing("", clearance("apart", law), tmp_path), "lost")
+    assert form.mean - plain.mean > 20 * form.sigma / math.sqrt(count)
+
+
+@pytest.mark.parametrize(
+    ("raceways", "measured", "beside", "words"),
+    [
+        (TAPER, "radial", "two", "a clearance of a bearing with contact_angle or grooves is radial and axial at once"),
+        (GROOVES, "axial", "fixed", "expected one axial play of 'two', got another draw of it beside 'play'"),
+        ("", "axial", "", "tolerances.play.measured: expected radial, or a bearing with contact_angle or grooves"),
+        (f"{TAPER}, {GROOVES}", "radial", "", "expected contact_angle or grooves, got both"),
+        ("contact_angle: 90 deg", "radial", "", "expected an angle between 0 and 90 deg"),
+    ],
+)
+def test_a_second_draw_of_one_clearance_is_refused(
+    raceways: str, measured: str, beside: str, words: str, tmp_path: Path
+) -> None:
+    play = (
+        f"  along: {{kind: axial_play, of: {beside}, distribution: {{kind: constant, value: 9 um}}}}" if beside else ""
+    )
+    with pytest.raises(SceneError, match=re.escape(words)):
+        with_bearing(raceways, clearance("apart", "constant, value: 14 um", measured), tmp_path, play)
 
 
 # parallel load paths ------------------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 from typing_extensions import override
 
+from tol3d.gearing.raceways import ObliqueContact, Raceways
 from tol3d.gearing.shafts import Mesh
 from tol3d.gears.flank import Flank
 from tol3d.gears.tooth_measures import ToothMeasure
@@ -206,16 +207,19 @@ class Clocking(Effect):
         return float(mesh.rate) * (self.part == mesh.driver) - (self.part == mesh.driven)
 
 
+TINY: Final = 1e-12  # mm; a clearance of that length has no direction
+
+
 @dataclass(frozen=True)
 class AxialPlay(Effect):
-    """Total play of a shaft along its axis [mm], `factor` times the deviation.
+    """Total play of a shaft along its axis [mm]: the deviation, or what a bearing with that radial clearance leaves.
 
     Nothing moves while a load stays on one side: where it changes, the shaft slides from one end to the other, and
     helical gears on it screw in their mates' teeth. By how much that turns a train is of its layout: model/slides.py.
     """
 
     shaft: str
-    factor: float = 1.0
+    raceways: Raceways | None = None
 
     def acts_in(self, mesh: Mesh) -> bool:
         """Teeth have the same backlash wherever the shaft lies."""
@@ -224,6 +228,25 @@ class AxialPlay(Effect):
     @override
     def slides(self, shaft: str) -> bool:
         return shaft == self.shaft
+
+    def play(self, columns: Array) -> Array:
+        """Play [mm] (trials,) of deviations (trials, components); of one with a direction by its length."""
+        length = columns[:, 0] if columns.shape[1] == 1 else np.hypot(columns[:, 0], columns[:, 1])
+        return length if self.raceways is None else self.raceways.axial(length)
+
+    def rates(self, columns: Array) -> Array:
+        """Its derivatives, (trials, components)."""
+        planar = columns.shape[1] == 2
+        length = np.hypot(columns[:, 0], columns[:, 1]) if planar else columns[:, 0]
+        along = columns / np.maximum(length, TINY)[:, None] if planar else np.ones_like(columns)
+        return along if self.raceways is None else along * self.raceways.slope(length)[:, None]
+
+    @property
+    def coefficient(self) -> float | None:
+        """Play per deviation; None where it is not in proportion."""
+        if self.raceways is None:
+            return 1.0
+        return 1 / math.tan(self.raceways.angle) if isinstance(self.raceways, ObliqueContact) else None
 
 
 UNIFORM: Final = 0

@@ -79,13 +79,23 @@ def helices_elsewhere(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 
 def second_axial_plays(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
-    """Axial plays of a shaft that has one: the stops that are nearer decide, which is no sum."""
+    """Axial plays of a shaft that has one, or a bearing whose clearance is one: the nearer stops decide, no sum."""
     first: dict[str, str] = {}
-    for name, spec in scene.of(AxialPlaySpec).items():
+    for name, spec in scene.tolerances.items():
+        if not isinstance(spec, AxialPlaySpec | BearingClearanceSpec):
+            continue
+        part = scene.parts[spec.of]
+        if isinstance(spec, BearingClearanceSpec) and not (isinstance(part, BearingSpec) and part.raceways):
+            continue
         shaft = shaft_at(spec.of, scene.parts)
-        if (other := first.setdefault(shaft, str(name))) != str(name):
-            words = f"expected one axial play of {shaft!r}, got another one beside {other!r}"
-            yield ("tolerances", str(name), "of"), f"{words}; state the play between the stops that are nearest"
+        if (other := first.setdefault(shaft, str(name))) == str(name):
+            continue
+        words = f"expected one axial play of {shaft!r}, got another draw of it beside {other!r}"
+        if all(isinstance(scene.tolerances[own], AxialPlaySpec) for own in (name, other)):
+            advice = "state the play between the stops that are nearest"
+        else:
+            advice = "a clearance of a bearing with contact_angle or grooves is radial and axial at once; take out one"
+        yield ("tolerances", str(name), "of"), f"{words}; {advice}"
 
 
 def readings_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:

@@ -1,11 +1,13 @@
 """Kinds of part: gears, shafts, bearings, arms, housings."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
+from tol3d.gearing.raceways import DeepGroove, ObliqueContact, Raceways
 from tol3d.scene.bases import GrowingSpec, Length, PartSpec
 from tol3d.scene.entry import Entry, Reference, Unusable
 from tol3d.scene.name import Name
@@ -198,8 +200,28 @@ class ShaftReference(Reference):
         return {gear: Unusable(f"which {shaft!r} carries", shaft) for shaft, gear in carried(parts)}
 
 
+def _oblique(angle: Quantity) -> Quantity:
+    if not 0.0 < angle.internal < math.pi / 2:
+        raise refused("", "an angle between 0 and 90 deg", repr(str(angle)))
+    return angle
+
+
+class GroovesSpec(Strict):
+    """Balls in deep grooves, which touch both of them before the shaft has slid far."""
+
+    ball: Length = Field(description="diameter D_w of the balls")
+    radii: float = Field(
+        gt=1.0,
+        lt=2.0,
+        description="radii of both grooves together over the balls' diameter, such as 1.04: 0.52 D_w each",
+    )
+
+
 class BearingSpec(PartSpec):
-    """A bearing: its clearance lets the shaft, with every gear on it, move across its axis."""
+    """A bearing: its clearance lets the shaft, with every gear on it, move across its axis.
+
+    One with a contact_angle, or grooves, holds the shaft along its axis too, with the same clearance.
+    """
 
     words: ClassVar[str] = "a bearing"
 
@@ -210,6 +232,25 @@ class BearingSpec(PartSpec):
         description="its middle, along the shaft's z",
         json_schema_extra={"default": "0 mm"},
     )
+    contact_angle: Annotated[Quantity, Of("angle"), AfterValidator(_oblique)] | None = Field(
+        default=None, description="of angular contact balls or tapered rollers, against a plane across the axis"
+    )
+    grooves: GroovesSpec | None = Field(default=None, description="of deep groove balls")
+
+    @model_validator(mode="after")
+    def _refuse_both(self) -> Self:
+        if self.contact_angle is not None and self.grooves is not None:
+            raise refused("grooves", "contact_angle or grooves", "both")
+        return self
+
+    @property
+    def raceways(self) -> Raceways | None:
+        """How its clearance shows along the axis; None where that is not known."""
+        if self.contact_angle is not None:
+            return ObliqueContact(self.contact_angle.internal)
+        if self.grooves is not None:
+            return DeepGroove((self.grooves.radii - 1.0) * self.grooves.ball.internal)
+        return None
 
     def references(self) -> tuple[Reference, ...]:
         """The shaft."""

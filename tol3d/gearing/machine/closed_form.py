@@ -19,7 +19,7 @@ from tol3d.gearing.model import Measure as GearMeasure
 from tol3d.gearing.model import Model
 from tol3d.gearing.stack_up import closed_form as closed_form_of_gears
 from tol3d.gearing.stack_up import reference_form, stack_of
-from tol3d.gearing.stack_up.closed_form import factored_stacks
+from tol3d.gearing.stack_up.closed_form import factored_stacks, sliding_coefficients
 from tol3d.gearing.stack_up.leaning import change_of, shares_by_net
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.closed_form import ClosedForm, Share
@@ -51,6 +51,8 @@ def closed_form(system: Joined, measure: GearMeasure, *, at_one_position: bool =
     ]
     net = bool(leaning & _leaning_bores(system))
     if system.bends(measure) or (net and any(reads_of(own) for own in group)):
+        return None
+    if sliding_coefficients(model, measure) is None:
         return None
     drawn = tuple(
         drawn_by_gear for drawn_by_gear in system.drawn_by_gears if not (net and drawn_by_gear.name in leaning)
@@ -152,7 +154,7 @@ def _by_net(
     system: Joined, measure: GearMeasure, group: Sequence[Contributor], direct: Mapping[str, float]
 ) -> list[Share]:
     """Shares of a group that leans gears; `direct` is what those do to the gears that do more than move bores."""
-    stacks = factored_stacks(system.gears.model, measure)
+    stacks, slid = factored_stacks(model := system.gears.model, measure), sliding_coefficients(model, measure) or {}
     bores = system.displacements
     slices = component_slices(system.drawn)
     displaced: dict[tuple[str, int], Array] = {}
@@ -170,7 +172,7 @@ def _by_net(
         by_bores = {own.name: np.asarray(moved)[:, 2 * k : 2 * k + 2] for k, own in enumerate(bores)}
         others = {name: own for name, own in deviations.items() if name not in slices}
         linear = sum(slope * deviations[name][:, 0] for name, slope in direct.items() if name in deviations)
-        return change_of(stacks, by_bores | others) + linear
+        return change_of(stacks, by_bores | others, slid) + linear
 
     return shares_by_net(change, group)
 

@@ -28,7 +28,6 @@ from tol3d.study.system.breakdown import Breakdown, SumTerm
 from tol3d.study.system.trials import Trials
 from tol3d.units import ARCMIN
 
-TINY: Final = 1e-12  # mm; a clearance of that length has no direction
 FREE: Final = 1e-9  # rad; load paths that overlap by rounding errors do not bind each other
 
 Variable = tuple[Stage, Literal["play", "rest"]]
@@ -151,7 +150,7 @@ def axial_play(model: Model, shaft: str, deviations: Array) -> Array:
     """Play of a shaft along its axis [mm], (trials,), by deviations (trials, components) [mm, rad, K]."""
     total = np.zeros(len(deviations))
     for columns, effect in _sliding_by(model, shaft):
-        total = total + effect.factor * axial_amount(deviations[:, columns])
+        total = total + effect.play(deviations[:, columns])
     return total
 
 
@@ -159,15 +158,8 @@ def axial_rates(model: Model, shaft: str, deviations: Array) -> Array:
     """Its derivatives, (trials, components)."""
     rates = np.zeros(deviations.shape)
     for columns, effect in _sliding_by(model, shaft):
-        own = deviations[:, columns]
-        along = own / np.maximum(axial_amount(own), TINY)[:, None] if own.shape[1] == 2 else np.ones_like(own)
-        rates[:, columns] += effect.factor * along
+        rates[:, columns] += effect.rates(deviations[:, columns])
     return rates
-
-
-def axial_amount(own: Array) -> Array:
-    """A deviation of one component, or the length of one with a direction (trials, components): (trials,)."""
-    return own[:, 0] if own.shape[1] == 1 else np.hypot(own[:, 0], own[:, 1])
 
 
 def _sliding_by(model: Model, shaft: str) -> Iterator[tuple[slice, AxialPlay]]:

@@ -43,10 +43,10 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     """Closed form of a measure read at one position.
 
     None for extremes over a turn, parallel load paths, links whose theory is no sum, single flanks that deviate, and
-    clearances of random direction that let shafts slide by their length.
+    clearances that let shafts slide by more than a share of them.
     """
     sums = _link_sums(model, measure)
-    slid = _slid(model, measure)
+    slid = sliding_coefficients(model, measure)
     if measure.take != "value" or not measure.kind.adds_up or sums is None or slid is None:
         return None
     parts = tuple(_parts(model, measure))
@@ -61,12 +61,13 @@ def closed_form(model: Model, measure: Measure) -> ClosedForm | None:
     leaning = [group for group in groups if group not in plain]
     names = frozenset(contributor.name for group in leaning for contributor in group)
     linear = [term for term in terms if term.term.tilts is None and term.term.contributor.name not in names]
-    own = [own for contributor in model.contributors if (own := _linear(contributor, linear, sums, slid))]
+    plainly_slid = {name: own for name, own in slid.items() if name not in names}
+    own = [own for contributor in model.contributors if (own := _linear(contributor, linear, sums, plainly_slid))]
     shares = _with_covariances(own) if measure.positions.over == "random" else [each.share for each in own]
     shares += [share for tilts in plain.values() for share in tilts]
     shares += [Share(term.term.contributor.name, 0.0, 0.0, 0.0) for term in terms if _plane(term) == "none"]
     for group in leaning:
-        shares += leaning_shares([(part.factor, part.stack) for part in parts], group)
+        shares += leaning_shares([(part.factor, part.stack) for part in parts], group, slid)
     nominal = _nominal(model, measure, sums)
     together = tuple(_merged(model, shares))
     return ClosedForm(
@@ -206,20 +207,20 @@ def _of_link(factor: float, rates: Sequence[float]) -> Wave:
     return factor * math.hypot(x, y), math.atan2(y, x), Fraction(0)
 
 
-_Slid = Mapping[str, float]
+Slid = Mapping[str, float]
 """Change of a measure per deviation by the shafts that slide, by contributor."""
 
 
-def _slid(model: Model, measure: Measure) -> _Slid | None:
-    """None where the play of a shaft is the length of a deviation with a direction."""
+def sliding_coefficients(model: Model, measure: Measure) -> Slid | None:
+    """None where the play of a shaft is not in proportion, or that to the length of a deviation with a direction."""
     found: dict[str, float] = {}
     for factor, slide in _slides(measure):
         for contributor in model.contributors:
             for effect in contributor.effect.singles:
                 if isinstance(effect, AxialPlay) and effect.slides(slide.shaft):
-                    if isinstance(contributor.draw, Planar):
+                    if isinstance(contributor.draw, Planar) or effect.coefficient is None:
                         return None
-                    own = factor * slide.factor * effect.factor
+                    own = factor * slide.factor * effect.coefficient
                     found[contributor.name] = found.get(contributor.name, 0.0) + own
     return found
 
@@ -234,7 +235,7 @@ def _slides(measure: Measure) -> Iterator[tuple[float, Slide]]:
             yield from ((_lever(measure) * stage.factor, slide) for slide in stage.slides)
 
 
-def _linear(contributor: Contributor, terms: Sequence[_ReadTerm], sums: _Sums, slid: _Slid) -> _Linear | None:
+def _linear(contributor: Contributor, terms: Sequence[_ReadTerm], sums: _Sums, slid: Slid) -> _Linear | None:
     own = [(term.amplitude, term.phase, term.rate) for term in terms if term.term.contributor is contributor]
     own += [_of_link(factor, one.rates[contributor.name]) for factor, one in sums if contributor.name in one.rates]
     own += [(slid[contributor.name], 0.0, Fraction(0))] if contributor.name in slid else []

@@ -41,14 +41,17 @@ def leaning_groups(stacks: Sequence[Stack[GearPair]]) -> tuple[tuple[Contributor
     return tuple(tuple(group.values()) for group in groups)
 
 
-def leaning_shares(parts: Sequence[tuple[float, Stack[GearPair]]], group: Sequence[Contributor]) -> list[Share]:
+def leaning_shares(
+    parts: Sequence[tuple[float, Stack[GearPair]]], group: Sequence[Contributor], slid: Mapping[str, float]
+) -> list[Share]:
     """The shares of a group in a sum of stack-ups; the coefficient of each is its mean slope.
 
     Args:
         parts: each stack-up with the change of the measure by its normal backlash.
         group: contributors whose deviations rest in the world.
+        slid: change of the measure per deviation by shafts that slide, by contributor.
     """
-    return shares_by_net(partial(change_of, parts), group)
+    return shares_by_net(partial(change_of, parts, slid=slid), group)
 
 
 def shares_by_net(change: Change, group: Sequence[AnyContributor]) -> list[Share]:
@@ -77,7 +80,9 @@ def shares_by_net(change: Change, group: Sequence[AnyContributor]) -> list[Share
     ]
 
 
-def change_of(parts: Sequence[tuple[float, Stack[GearPair]]], deviations: Mapping[str, Array]) -> Array:
+def change_of(
+    parts: Sequence[tuple[float, Stack[GearPair]]], deviations: Mapping[str, Array], slid: Mapping[str, float]
+) -> Array:
     """Change of a measure (points,) by the deviations (points, components) of some contributors alone."""
     total = np.zeros(len(next(iter(deviations.values()))))
     at_rest = (np.zeros(1), np.zeros(1))
@@ -91,6 +96,8 @@ def change_of(parts: Sequence[tuple[float, Stack[GearPair]]], deviations: Mappin
                 in_plane += own @ term.tilts[0]
                 across += own @ term.tilts[1]
         total -= factor * stack.lost(in_plane, across)
+    for name in slid.keys() & deviations.keys():
+        total += slid[name] * deviations[name][:, 0]
     return total
 
 

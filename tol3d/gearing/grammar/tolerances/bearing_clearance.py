@@ -2,14 +2,14 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from tol3d.gearing.effects import NOTHING, AxisOffset, AxisTilt, Effect, Plane
+from tol3d.gearing.effects import NOTHING, AxialPlay, AxisOffset, AxisTilt, Effect, Plane
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
-from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, gears_on
+from tol3d.gearing.grammar.parts import BearingSpec, BevelGearSpec, GearSpec, gears_on
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
     GearToleranceSpec,
     Meaning,
@@ -83,6 +83,8 @@ class BearingClearanceSpec(GearToleranceSpec):
     `apart` moves it along the line of centres so that positive opens, away from the mate, `tooth_force` along
     the force on its working flank, `{at: angle}` at an azimuth of the frame of gear or shaft at rest, `random`
     anywhere. Of a bearing, the first two are those of the gear on its shaft that the mesh is of.
+
+    Of a bearing with contact_angle or grooves the same draw lets the shaft slide, as axial_play does: G_a of G_r.
     """
 
     displaces: ClassVar[bool] = True
@@ -103,6 +105,10 @@ class BearingClearanceSpec(GearToleranceSpec):
         Discriminator(shape),
         known_word(*WORDS),
     ] = Field(default="apart", description="which way the axis moves")
+    measured: Literal["radial", "axial"] = Field(
+        default="radial",
+        description="axial: what is stated is the clearance along the axis, of a bearing with contact_angle or grooves",
+    )
 
     def references(self) -> tuple[Reference, ...]:
         """The gear or bearing, and the mesh if it is given."""
@@ -112,7 +118,15 @@ class BearingClearanceSpec(GearToleranceSpec):
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The gear takes part in the mesh, or in one mesh only; so does a gear on the bearing's shaft."""
         part = parts[self.of]
-        return self._of_bearing(part, parts, moves) if isinstance(part, BearingSpec) else self._of_gear(moves)
+        yield from self._of_bearing(part, parts, moves) if isinstance(part, BearingSpec) else self._of_gear(moves)
+        raceways = part.raceways if isinstance(part, BearingSpec) else None
+        if self.measured == "axial" and raceways is None:
+            yield Contradiction(("measured",), "radial, or a bearing with contact_angle or grooves", "axial")
+        elif isinstance(part, BearingSpec) and raceways is not None:
+            for gear in gears_on(part.shaft, parts):
+                if isinstance(parts[gear], BevelGearSpec):
+                    expected = "a bearing without contact_angle or grooves, for its shaft would slide"
+                    yield Contradiction(("of",), expected, f"{self.of!r} of the shaft of the bevel gear {gear!r}")
 
     def _of_gear(self, moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         meshes = meshes_of(self.of, moves)
@@ -158,14 +172,19 @@ class BearingClearanceSpec(GearToleranceSpec):
         levers = [Lever(own, at, others[0] if others else None) for own in nominal.carried_by(bearing.shaft)]
         if not levers:
             return Meaning(NOTHING)
+        raceways = bearing.raceways
+        slides = [AxialPlay(bearing.shaft, raceways)] if raceways else []
+        scale = raceways if self.measured == "axial" else None
         if self.direction == "random":
-            return in_direction([effect for lever in levers for effect in lever.anywhere()], self.direction)
+            effects = [effect for lever in levers for effect in lever.anywhere()]
+            return replace(in_direction([*effects, *slides], self.direction), scale=scale)
         mesh = nominal.meshes[self.mesh] if self.mesh else None
         read = (lever.own for lever in levers if mesh and lever.own.gear in (mesh.driver, mesh.driven))
         gear = next(read, levers[0].own)
         seen = self._azimuth(gear.gear, nominal)
         azimuth = -seen if gear.backward and not isinstance(self.direction, At) else seen
-        return Meaning(together([effect for lever in levers for effect in lever.towards(azimuth)]), least=0.0)
+        effects = [effect for lever in levers for effect in lever.towards(azimuth)]
+        return Meaning(together([*effects, *slides]), least=0.0, scale=scale)
 
     def _azimuth(self, gear: str, nominal: Nominal) -> float:
         """Azimuth in which the axis of a gear moves [rad], in its frame at rest on its shaft."""
