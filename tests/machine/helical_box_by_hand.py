@@ -25,6 +25,7 @@ APART: Final = 190.0
 SPAN: Final = 276.0  # from the middle of one end wall to that of the other
 ALPHA: Final = math.radians(20)
 STEEL, IRON = 11.5e-6, 10.5e-6
+GROOVES: Final = 0.04 * 12.7  # between the centres of both grooves of a 6210, whose balls touch both
 SERIES: Final = {"cd25": (-145.0, -95.0), "c25": (-165.0, -115.0), "c26": (-195.0, -115.0)}
 """DIN 3967 for reference diameters of 125 to 280 mm [um], as its tables print them."""
 
@@ -286,8 +287,11 @@ def by_involutes(columns: Columns, stage: Stage) -> Array:
 
 def lost_motion(columns: Columns, first: Array, second: Array) -> Array:
     """Free turn of the output [rad] by the normal backlashes of both stages, and by shafts that slide (trials,)."""
-    plays = sum(rate * columns[f"{shaft} axial play [um]"] / 1000 for shaft, rate in SLIDING.items())
-    return np.asarray(PER_FIRST * first + PER_SECOND * second + plays)
+    plays = {shaft: columns[f"{shaft} axial play [um]"] / 1000 for shaft in ("middle", "output")}
+    across = np.hypot(*(columns[f"input bearing clearance.{way} [um]"] / 1000 for way in "xy"))
+    plays["input"] = 2 * np.sqrt(GROOVES**2 - (GROOVES - across / 2) ** 2)
+    slid = sum(rate * plays[shaft] for shaft, rate in SLIDING.items())
+    return np.asarray(PER_FIRST * first + PER_SECOND * second + slid)
 
 
 def own_draws(count: int, seed: int) -> dict[str, Array]:

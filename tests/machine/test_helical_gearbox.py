@@ -125,6 +125,8 @@ def test_means_and_sigmas_are_those_of_other_draws(run: Run) -> None:
         summary = run.summary["measures"][name]["analytic"]
         assert summary["mean"] == pytest.approx(own.mean(), abs=4 * own.std() * math.sqrt(1 / TRIALS + 1 / count))
         assert summary["sigma"] == pytest.approx(own.std(), rel=4 * math.sqrt((1 / TRIALS + 1 / count) / 2))
+        if name == "lost motion":  # a play by grooves is no share of a clearance
+            continue
         form = run.summary["measures"][name]["analytic_closed_form"]
         assert form["mean"] == pytest.approx(own.mean(), abs=4 * own.std() / math.sqrt(count))
         # of a mean position: what the position takes of leaning teeth has no share in it
