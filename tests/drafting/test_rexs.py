@@ -339,12 +339,12 @@ def test_helical_stages_are_read_with_their_backlash() -> None:
     assert [1e3 * (own.normal_backlash or 0) for own in (fast, slow)] == pytest.approx([0.001, -0.004], abs=6e-4)
 
 
-def test_helical_gears_are_drafted_with_their_meshes_alone() -> None:
+def test_helical_gears_are_drafted_with_their_train() -> None:
     drafted = gearbox_draft(two_stages().file())
     text = drafted.scene()[0]
     read = yaml.safe_load(text)
-    assert [own["kind"] for own in read["moves"].values()] == ["mesh", "mesh"]
-    assert "lost motion of whole trains: helical gears are simulated in their meshes alone" in text
+    assert [own["kind"] for own in read["moves"].values()] == ["mesh", "mesh", "train"]
+    assert "lost_motion" in {own["kind"] for own in read["measures"].values()}
     simulation_of(load_text(text, Path("box.yaml")), Overrides())
     assert read["parts"]["a"] == {
         "kind": "helical_gear", "teeth": 27, "module": "4.5 mm", "pressure_angle": "20 deg", "face_width": "15 mm",

@@ -22,7 +22,6 @@ from tol3d.files import FileContent
 from tol3d.simulate import Overrides, load_text, simulation_of
 
 SCENE: Final = Path("scene.yaml")
-NO_TRAIN: Final = "lost motion of whole trains: helical gears are simulated in their meshes alone"
 TIGHT: Final = 5e-4  # mm; normal backlash that is none: files print profile shifts with 4 digits and more
 MOST_NOTES: Final = 12  # lines on the screen; all of them are in the scene
 
@@ -133,19 +132,18 @@ def gearbox_draft(content: FileContent) -> GearboxDraft:
     """
     gearbox = gearbox_of(read_document(content))
     stages = [*gearbox.stages, *(stage for own in gearbox.sets for stage in own.stages)]
-    helical = any(gear.helical for stage in stages for gear in stage.gears)
     shafts = scene_shafts(gearbox)
     bearings, others = chosen_bearings(gearbox, shafts)
     names = named(gearbox, shafts, bearings)
     mounted = [(drive, mounting(drive, gearbox)) for drive in drives(gearbox)]
-    trains = [] if helical else list(trains_of(mounted, gearbox, names))
+    trains = list(trains_of(mounted, gearbox, names))
     entries = [
         *parts(gearbox, names, _all_places(mounted), bearings, _rounding(stages)),
         *tolerances(gearbox, names, bearings),
         *moves(mounted, trains, names),
         *measures(gearbox, trains, names),
     ]
-    remarks = [*gearbox.left_out, *([NO_TRAIN] if helical else ()), *others, *_unsaid(gearbox, names)]
+    remarks = [*gearbox.left_out, *others, *_unsaid(gearbox, names)]
     remarks += [own for _, at in mounted for own in at.remarks]
     return GearboxDraft(content.path.name, gearbox, entries, remarks)
 
