@@ -15,9 +15,12 @@ from machine.helical_box_by_hand import (
     APART,
     FIRST,
     GEARS,
+    GROOVES,
     IRON,
+    PER_FIRST,
     SAID,
     SECOND,
+    SLIDING,
     SPAN,
     STAGES,
     STEEL,
@@ -113,6 +116,18 @@ def test_the_closed_form_has_the_exact_mean(measure: str, lost: float, run: Run)
     form = run.summary["measures"][measure]["analytic_closed_form"]
     expected = 1000 * (nominal(stage) + thin + warm) - lost
     assert form["mean"] == pytest.approx(expected, abs=1e-3 * form["sigma"])
+
+
+def test_a_bearing_that_lets_its_shaft_slide_has_the_share_of_that(run: Run) -> None:
+    """Of the variance by its play, and by its clearance across: half of it, 198/276 at the gear, sees the first stage."""
+    columns = run.columns()
+    across = np.hypot(*(columns[f"input bearing clearance.{way} [um]"] / 1000 for way in "xy"))
+    slid = SLIDING["input"] * 2 * np.sqrt(GROOVES**2 - (GROOVES - across / 2) ** 2)
+    radial = PER_FIRST * FIRST.opening * (198 / 276) / 2 * columns["input bearing clearance.x [um]"] / 1000
+    share = 100 * ARCMIN**2 * (slid.var() + radial.var()) / columns["analytic:lost motion"].var()
+    assert share > 4.0
+    rows = {row["name"]: row for row in run.summary["measures"]["lost motion"]["contributors"]}
+    assert rows["input bearing clearance"]["analytic_percent"] == pytest.approx(share, abs=0.7)  # leans, and chance
 
 
 def test_means_and_sigmas_are_those_of_other_draws(run: Run) -> None:
