@@ -14,6 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gear_trials import drawn_trials, form_of, gear_columns, measure_of, model_of_scene
+from guides import quoted
+from of_kind import of_kind
 from oracles.screw_chain import Helical, Meshing, turn_between
 
 from tol3d.errors import SceneError
@@ -21,7 +23,8 @@ from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.methods.analytic import AnalyticMethod
 from tol3d.gearing.methods.geometric import GeometricMethod
-from tol3d.gearing.model import Model, Reading
+from tol3d.gearing.model import LostMotion, Model, Reading
+from tol3d.gearing.model.measure import Stage
 from tol3d.gearing.raceways import DeepGroove, ObliqueContact
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import closed_form, stack_of
@@ -592,6 +595,22 @@ def test_a_second_draw_of_one_clearance_is_refused(
     )
     with pytest.raises(SceneError, match=re.escape(words)):
         with_bearing(raceways, clearance("apart", "constant, value: 14 um", measured), tmp_path, play)
+
+
+def test_the_numbers_of_the_guide_are_those_of_its_scene(tmp_path: Path) -> None:
+    """0.1 mm at the output 1'54", twists on the lay shaft -0.0149 and -0.0108, 14 um across 141 um along."""
+    _, text = quoted("trains")
+    (path := tmp_path / "guide.yaml").write_text(text)
+    model = model_of_scene(path)
+    assert not [line for line in model.warnings if "acts on nothing" in line]
+    twists = [next(part.gear for part in model.gears if part.name == name).twist for name in ("wheel", "second pinion")]
+    assert [round(twist, 4) for twist in twists] == [-0.0149, -0.0108]
+    stages = {stage.link: stage for stage in of_kind(LostMotion, measure_of(model, "lost motion").kind).stages}
+    slides = {slide.shaft: slide for stage in stages.values() for slide in of_kind(Stage, stage).slides}
+    assert slides["lay shaft"].factor == pytest.approx(0.0041, abs=5e-5)
+    assert round(math.degrees(0.1 * slides["output"].factor) * 3600) == 114
+    assert round(1000 * float(DeepGroove(0.357).axial(np.array([0.014]))[0])) == 141
+    assert set(slides) == {"input", "lay shaft", "output"}
 
 
 # parallel load paths ------------------------------------------------------------------------------------------------
