@@ -23,7 +23,7 @@ from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.methods.analytic import AnalyticMethod
 from tol3d.gearing.methods.geometric import GeometricMethod
-from tol3d.gearing.model import LostMotion, Model, Reading
+from tol3d.gearing.model import AxisOffset, LostMotion, Model, Reading
 from tol3d.gearing.model.measure import Stage
 from tol3d.gearing.raceways import DeepGroove, ObliqueContact
 from tol3d.gearing.slopes.sensitivity import sensitivities
@@ -741,3 +741,83 @@ def test_the_transmission_error_of_a_helical_train_is_that_of_its_transverse_sec
         if name == "drive":
             between = gear_columns(model, exact_engine(model), trials)["geometric:range"][0] / ARCMIN
             assert np.ptp(geometric) <= between < 1.005 * np.ptp(geometric)  # a parabola over 30 positions a turn
+
+
+# bearings that follow the tooth force ---------------------------------------------------------------------------------
+
+
+def loads_of(gear: Helical, teeth: tuple[float, float, float], places: tuple[float, float], ccw: bool) -> np.ndarray:
+    """Loads (2, 3) of a driver on two bearings by equilibrium in space, in units of the tangential force.
+
+    Args:
+        gear: that drives.
+        teeth: its place along the shaft [mm], the azimuth of the mesh in the shaft's frame, the working pressure angle.
+        places: of the bearings [mm]; the first one takes the thrust.
+        ccw: whether the gear turns counter-clockwise about its own z.
+
+    Its mate holds it back, pushes it away, and pushes a right hand that turns counter-clockwise along +z.
+    """
+    at, azimuth, alpha = teeth
+    outwards = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
+    z = np.array([0.0, 0.0, float(gear.sense)])
+    sense = 1.0 if ccw else -1.0
+    radius = gear.radius * math.cos(math.atan(math.tan(math.radians(20.0)) / math.cos(gear.helix))) / math.cos(alpha)
+    tan_w = math.tan(gear.helix) * radius / gear.radius
+    force = -sense * np.cross(z, outwards) - math.tan(alpha) * outwards + gear.hand * sense * tan_w * z
+    point = radius * outwards + np.array([0.0, 0.0, at])
+    rows = np.zeros((6, 5))  # of x, y of both and z of the first
+    for k, (bearing, axis) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1), (0, 2))):
+        unit = np.eye(3)[axis]
+        rows[:3, k], rows[3:, k] = unit, np.cross([0.0, 0.0, places[bearing]], unit)
+    moment = np.cross(point, force)
+    moment[2] = 0.0  # the motor's
+    found, *_ = np.linalg.lstsq(rows, np.concatenate([force, moment]), rcond=None)
+    assert rows @ found == pytest.approx(np.concatenate([force, moment]), abs=1e-9)
+    return np.array([[found[0], found[1], found[4]], [found[2], found[3], 0.0]])
+
+
+@pytest.mark.parametrize("flank", ["left", "right"])
+@pytest.mark.parametrize("hand", [1, -1])
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("places", [(0.0, 70.0), (48.0, 90.0)])
+def test_bearings_of_a_helical_gear_move_where_statics_push_them(
+    flank: str, hand: int, sense: int, places: tuple[float, float], tmp_path: Path
+) -> None:
+    """The gear C at 30 mm, between its bearings and beyond both; a driver's left flank works where it turns ccw."""
+    gears = two_stages((1, hand), (1, sense))
+    chain(gears, TWO, plays(), tmp_path)
+    path = tmp_path / "chain.yaml"
+    clearances = "".join(
+        f"  {name} play: {{kind: bearing_clearance, of: {name}, mesh: second, direction: tooth_force, "
+        "distribution: {kind: constant, value: 10 um}}\n"
+        for name in ("low", "high")
+    )
+    bearings = "".join(
+        f"  {name}: {{kind: bearing, shaft: two, at: {at} mm}}\n"
+        for name, at in zip(("low", "high"), places, strict=True)
+    )
+    text = path.read_text().replace("tolerances:\n", f"{bearings}tolerances:\n{clearances}")
+    path.write_text(text.replace("driver: C,", f"driver: C, working_flank: {flank},"))
+    model = model_of_scene(path)
+    pair = model.mesh("second").pair
+    azimuth = sense * math.radians(33.0)  # counted in the gear's frame, which is turned about x
+    loads = loads_of(gears["C"], (30.0, azimuth, pair.working_pressure_angle), places, flank == "left")
+    for name, load in zip(("low", "high"), loads, strict=True):
+        effect = next(own for own in model.contributors if own.name == f"{name} play").effect
+        moved = next(one for one in effect.singles if isinstance(one, AxisOffset) and one.part == "C")
+        x, y, _ = moved.direction
+        lever = moved.factor * np.array([x, sense * y])  # in the shaft's frame
+        at, other = places if name == "low" else reversed(places)
+        own = lever / ((30.0 - other) / (at - other)) / 0.5
+        assert own == pytest.approx(load[:2] / np.hypot(*load[:2]), abs=1e-12)
+
+
+def test_the_tooth_force_of_a_helical_gear_needs_two_bearings(tmp_path: Path) -> None:
+    chain(two_stages((1, 1)), TWO, plays(), tmp_path)
+    path = tmp_path / "chain.yaml"
+    force = "direction: tooth_force, distribution: {kind: constant, value: 9 um}"
+    play = f"  play: {{kind: bearing_clearance, of: only, mesh: second, {force}}}"
+    bearing = "  only: {kind: bearing, shaft: two}"
+    path.write_text(path.read_text().replace("tolerances:", f"{bearing}\ntolerances:\n{play}"))
+    with pytest.raises(SceneError, match=r"play\.direction: expected apart, random, .* or a second bearing, got"):
+        model_of_scene(path)
