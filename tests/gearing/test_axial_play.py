@@ -14,6 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gear_trials import drawn_trials, form_of, gear_columns, measure_of, model_of_scene
+from guides import quoted
+from of_kind import of_kind
 from oracles.screw_chain import Helical, Meshing, turn_between
 
 from tol3d.errors import SceneError
@@ -21,7 +23,8 @@ from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.methods.analytic import AnalyticMethod
 from tol3d.gearing.methods.geometric import GeometricMethod
-from tol3d.gearing.model import Model, Reading
+from tol3d.gearing.model import AxisOffset, LostMotion, Model, Reading
+from tol3d.gearing.model.measure import Stage
 from tol3d.gearing.raceways import DeepGroove, ObliqueContact
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import closed_form, stack_of
@@ -594,6 +597,22 @@ def test_a_second_draw_of_one_clearance_is_refused(
         with_bearing(raceways, clearance("apart", "constant, value: 14 um", measured), tmp_path, play)
 
 
+def test_the_numbers_of_the_guide_are_those_of_its_scene(tmp_path: Path) -> None:
+    """0.1 mm at the output 1'54", twists on the lay shaft -0.0149 and -0.0108, 14 um across 141 um along."""
+    _, text = quoted("trains")
+    (path := tmp_path / "guide.yaml").write_text(text)
+    model = model_of_scene(path)
+    assert not [line for line in model.warnings if "acts on nothing" in line]
+    twists = [next(part.gear for part in model.gears if part.name == name).twist for name in ("wheel", "second pinion")]
+    assert [round(twist, 4) for twist in twists] == [-0.0149, -0.0108]
+    stages = {stage.link: stage for stage in of_kind(LostMotion, measure_of(model, "lost motion").kind).stages}
+    slides = {slide.shaft: slide for stage in stages.values() for slide in of_kind(Stage, stage).slides}
+    assert slides["lay shaft"].factor == pytest.approx(0.0041, abs=5e-5)
+    assert round(math.degrees(0.1 * slides["output"].factor) * 3600) == 114
+    assert round(1000 * float(DeepGroove(0.357).axial(np.array([0.014]))[0])) == 141
+    assert set(slides) == {"input", "lay shaft", "output"}
+
+
 # parallel load paths ------------------------------------------------------------------------------------------------
 
 
@@ -722,3 +741,83 @@ def test_the_transmission_error_of_a_helical_train_is_that_of_its_transverse_sec
         if name == "drive":
             between = gear_columns(model, exact_engine(model), trials)["geometric:range"][0] / ARCMIN
             assert np.ptp(geometric) <= between < 1.005 * np.ptp(geometric)  # a parabola over 30 positions a turn
+
+
+# bearings that follow the tooth force ---------------------------------------------------------------------------------
+
+
+def loads_of(gear: Helical, teeth: tuple[float, float, float], places: tuple[float, float], ccw: bool) -> np.ndarray:
+    """Loads (2, 3) of a driver on two bearings by equilibrium in space, in units of the tangential force.
+
+    Args:
+        gear: that drives.
+        teeth: its place along the shaft [mm], the azimuth of the mesh in the shaft's frame, the working pressure angle.
+        places: of the bearings [mm]; the first one takes the thrust.
+        ccw: whether the gear turns counter-clockwise about its own z.
+
+    Its mate holds it back, pushes it away, and pushes a right hand that turns counter-clockwise along +z.
+    """
+    at, azimuth, alpha = teeth
+    outwards = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
+    z = np.array([0.0, 0.0, float(gear.sense)])
+    sense = 1.0 if ccw else -1.0
+    radius = gear.radius * math.cos(math.atan(math.tan(math.radians(20.0)) / math.cos(gear.helix))) / math.cos(alpha)
+    tan_w = math.tan(gear.helix) * radius / gear.radius
+    force = -sense * np.cross(z, outwards) - math.tan(alpha) * outwards + gear.hand * sense * tan_w * z
+    point = radius * outwards + np.array([0.0, 0.0, at])
+    rows = np.zeros((6, 5))  # of x, y of both and z of the first
+    for k, (bearing, axis) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1), (0, 2))):
+        unit = np.eye(3)[axis]
+        rows[:3, k], rows[3:, k] = unit, np.cross([0.0, 0.0, places[bearing]], unit)
+    moment = np.cross(point, force)
+    moment[2] = 0.0  # the motor's
+    found, *_ = np.linalg.lstsq(rows, np.concatenate([force, moment]), rcond=None)
+    assert rows @ found == pytest.approx(np.concatenate([force, moment]), abs=1e-9)
+    return np.array([[found[0], found[1], found[4]], [found[2], found[3], 0.0]])
+
+
+@pytest.mark.parametrize("flank", ["left", "right"])
+@pytest.mark.parametrize("hand", [1, -1])
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("places", [(0.0, 70.0), (48.0, 90.0)])
+def test_bearings_of_a_helical_gear_move_where_statics_push_them(
+    flank: str, hand: int, sense: int, places: tuple[float, float], tmp_path: Path
+) -> None:
+    """The gear C at 30 mm, between its bearings and beyond both; a driver's left flank works where it turns ccw."""
+    gears = two_stages((1, hand), (1, sense))
+    chain(gears, TWO, plays(), tmp_path)
+    path = tmp_path / "chain.yaml"
+    clearances = "".join(
+        f"  {name} play: {{kind: bearing_clearance, of: {name}, mesh: second, direction: tooth_force, "
+        "distribution: {kind: constant, value: 10 um}}\n"
+        for name in ("low", "high")
+    )
+    bearings = "".join(
+        f"  {name}: {{kind: bearing, shaft: two, at: {at} mm}}\n"
+        for name, at in zip(("low", "high"), places, strict=True)
+    )
+    text = path.read_text().replace("tolerances:\n", f"{bearings}tolerances:\n{clearances}")
+    path.write_text(text.replace("driver: C,", f"driver: C, working_flank: {flank},"))
+    model = model_of_scene(path)
+    pair = model.mesh("second").pair
+    azimuth = sense * math.radians(33.0)  # counted in the gear's frame, which is turned about x
+    loads = loads_of(gears["C"], (30.0, azimuth, pair.working_pressure_angle), places, flank == "left")
+    for name, load in zip(("low", "high"), loads, strict=True):
+        effect = next(own for own in model.contributors if own.name == f"{name} play").effect
+        moved = next(one for one in effect.singles if isinstance(one, AxisOffset) and one.part == "C")
+        x, y, _ = moved.direction
+        lever = moved.factor * np.array([x, sense * y])  # in the shaft's frame
+        at, other = places if name == "low" else reversed(places)
+        own = lever / ((30.0 - other) / (at - other)) / 0.5
+        assert own == pytest.approx(load[:2] / np.hypot(*load[:2]), abs=1e-12)
+
+
+def test_the_tooth_force_of_a_helical_gear_needs_two_bearings(tmp_path: Path) -> None:
+    chain(two_stages((1, 1)), TWO, plays(), tmp_path)
+    path = tmp_path / "chain.yaml"
+    force = "direction: tooth_force, distribution: {kind: constant, value: 9 um}"
+    play = f"  play: {{kind: bearing_clearance, of: only, mesh: second, {force}}}"
+    bearing = "  only: {kind: bearing, shaft: two}"
+    path.write_text(path.read_text().replace("tolerances:", f"{bearing}\ntolerances:\n{play}"))
+    with pytest.raises(SceneError, match=r"play\.direction: expected apart, random, .* or a second bearing, got"):
+        model_of_scene(path)
