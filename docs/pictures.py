@@ -113,6 +113,7 @@ PICTURES: Final[Mapping[str, Picture]] = {
         ("benchmarks/disc_profile.py",),
     ),
     "gearbox.png": viewed("gearbox_in_housing", "--worst"),
+    "helical_gearbox.png": viewed("helical_gearbox", "--worst"),
     "records.png": Picture(
         (
             "yaml:records.md:pair.yaml",

@@ -14,15 +14,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gear_trials import drawn_trials, form_of, gear_columns, measure_of, model_of_scene
+from guides import quoted
+from of_kind import of_kind
 from oracles.screw_chain import Helical, Meshing, turn_between
 
 from tol3d.errors import SceneError
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
-from tol3d.gearing.model import Model, Reading
+from tol3d.gearing.methods.analytic import AnalyticMethod
+from tol3d.gearing.methods.geometric import GeometricMethod
+from tol3d.gearing.model import AxisOffset, LostMotion, Model, Reading
+from tol3d.gearing.model.measure import Stage
 from tol3d.gearing.raceways import DeepGroove, ObliqueContact
 from tol3d.gearing.slopes.sensitivity import sensitivities
-from tol3d.gearing.stack_up import closed_form
+from tol3d.gearing.stack_up import closed_form, stack_of
 from tol3d.study.system.trials import Trials
 
 ARCMIN = 10800 / math.pi  # in a radian
@@ -290,8 +295,8 @@ def test_worked_numbers_of_one_mesh_are_c_sin_beta_b_along_the_normals_and_c_tan
     model = chain(gears, {"first": ("A", "B")}, plays(two=100.0), tmp_path)
     turned = np.subtract(sliding, still)
     assert turned == pytest.approx([1.492537e-3] * 2, abs=1e-9)
-    wheel = model.meshes[0].pair.wheel
-    assert turned * wheel.section_arm == pytest.approx([0.1 * math.sin(wheel.base_helix_angle)] * 2, abs=1e-12)
+    sin_b = math.sin(math.radians(30.0)) * math.cos(math.radians(20.0))  # of the base helix
+    assert turned * model.meshes[0].pair.wheel.section_arm == pytest.approx([0.1 * sin_b] * 2, abs=1e-12)
     assert turned * gears["B"].radius == pytest.approx([0.1 * math.tan(math.radians(30.0))] * 2, abs=1e-12)
 
 
@@ -592,6 +597,22 @@ def test_a_second_draw_of_one_clearance_is_refused(
         with_bearing(raceways, clearance("apart", "constant, value: 14 um", measured), tmp_path, play)
 
 
+def test_the_numbers_of_the_guide_are_those_of_its_scene(tmp_path: Path) -> None:
+    """0.1 mm at the output 1'54", twists on the lay shaft -0.0149 and -0.0108, 14 um across 141 um along."""
+    _, text = quoted("trains")
+    (path := tmp_path / "guide.yaml").write_text(text)
+    model = model_of_scene(path)
+    assert not [line for line in model.warnings if "acts on nothing" in line]
+    twists = [next(part.gear for part in model.gears if part.name == name).twist for name in ("wheel", "second pinion")]
+    assert [round(twist, 4) for twist in twists] == [-0.0149, -0.0108]
+    stages = {stage.link: stage for stage in of_kind(LostMotion, measure_of(model, "lost motion").kind).stages}
+    slides = {slide.shaft: slide for stage in stages.values() for slide in of_kind(Stage, stage).slides}
+    assert slides["lay shaft"].factor == pytest.approx(0.0041, abs=5e-5)
+    assert round(math.degrees(0.1 * slides["output"].factor) * 3600) == 114
+    assert round(1000 * float(DeepGroove(0.357).axial(np.array([0.014]))[0])) == 141
+    assert set(slides) == {"input", "lay shaft", "output"}
+
+
 # parallel load paths ------------------------------------------------------------------------------------------------
 
 
@@ -635,7 +656,168 @@ def test_one_gear_of_a_shaft_that_lies_elsewhere_closes_by_its_screw(tmp_path: P
         assert lost(model) == pytest.approx((wanted, wanted), abs=SAME_TURN)
 
 
+@pytest.mark.parametrize("senses", [(1, 1), (1, -1), (-1, 1)])
+def test_a_shaft_takes_gears_that_face_either_way_along(senses: tuple[int, int], tmp_path: Path) -> None:
+    """The output turns by c (kappa_B - kappa_C) 19/53 of a shift c: both meshes' rests by hand, by both methods."""
+    gears, shift = two_stages((1, 1), senses), 0.05
+    text = f"  shift: {{kind: mounting_face, of: two, distribution: {{kind: constant, value: {shift} mm}}}}"
+    model = chain(gears, TWO, f"{text}\n{plays()}", tmp_path)
+    trials = drawn_trials(model, 1, 0, 1)
+    rows = np.concatenate([trials.deviations, trials.deviations])
+    rows[1, model.component_slices["shift"]] = 0.0
+    for mesh, gear, role in ((model.meshes[0], gears["B"], 1), (model.meshes[1], gears["D"], -1)):
+        carried = gear if role == 1 else gears["C"]
+        wanted = role * gear.hand * math.tan(gear.helix) / gear.radius * shift * carried.sense
+        found = ExactEngine(model).read(ExactEngine(model).build(rows), mesh, Reading(), np.full(2, 0.3))
+        assert found.driven_angle[0] - found.driven_angle[1] == pytest.approx(wanted, abs=1e-12)
+        stack = stack_of(model, mesh, Reading())
+        aside = stack.aside(rows, np.full(2, 0.3)) / mesh.pair.wheel.section_arm
+        assert aside[0] - aside[1] == pytest.approx(wanted, abs=1e-15)
+
+
 def test_axial_play_between_parallel_load_paths_is_refused(tmp_path: Path) -> None:
     play = "  play: {kind: axial_play, of: two, distribution: {kind: constant, value: 30 um}}"
     with pytest.raises(SceneError, match=r"play\.of: expected a shaft in one load path, got 'two', at which"):
         herringbone(play, tmp_path)
+
+
+# transmission error of trains ----------------------------------------------------------------------------------------
+
+RUNNING = """\
+  A off: {kind: eccentricity, of: A, direction: {at: 20 deg}, distribution: {kind: constant, value: 5 um}}
+  B off: {kind: eccentricity, of: B, direction: {at: 75 deg}, distribution: {kind: constant, value: 8 um}}
+  C off: {kind: eccentricity, of: C, direction: {at: 130 deg}, distribution: {kind: constant, value: 6 um}}
+  D off: {kind: eccentricity, of: D, direction: {at: -40 deg}, distribution: {kind: constant, value: 9 um}}
+  shift: {kind: axial_shift, of: two, distribution: {kind: constant, value: 60 um}}
+"""
+CURVES = """\
+  drive: {kind: transmission_error, of: train, over: turn, take: curve, positions: 30}
+  back: {kind: transmission_error, of: train, over: turn, take: curve, positions: 30, flank: back}
+  range: {kind: transmission_error, of: train, over: turn, take: range, positions: 30}
+"""
+
+
+def wave(gears: Mapping[str, Helical], model: Model, flank: int) -> np.ndarray:
+    """Transmission error of the train [rad] by the transverse sections, first order; flank 1 drives, -1 is behind.
+
+    Of a mesh (e1 sin(psi1 + alpha) + e2 sin(psi2 - alpha))/r_b2, psi from +x in each gear's sense of rotation, and of
+    the back side with the angle's sign changed: as of spur gears, with the transverse working angle. A driver's centre
+    at e moves e . n along the normal n = (sin(alpha), cos(alpha)) on the driven gear, a driven one takes that back.
+    """
+    off = {"A": (0.005, 20.0), "B": (0.008, 75.0), "C": (0.006, 130.0), "D": (0.009, -40.0)}
+    total = np.zeros(31)
+    for mesh, rate in zip(model.meshes, (19 / 53, 1.0), strict=True):
+        turning = model.layout.mesh_turn[mesh.name]
+        theta = np.array([turning.at(2 * math.pi * k / 30) for k in range(31)])
+        pair, pushes = mesh.pair, -mesh.working_flank  # the sense in which the driver turns, about its z
+        driven = pair.driven_angle(theta)
+        alpha = flank * pair.working_pressure_angle
+        (e1, phi1), (e2, phi2) = ((size, math.radians(angle)) for size, angle in (off[mesh.driver], off[mesh.driven]))
+        psi1, psi2 = pushes * (phi1 + theta), -pushes * (phi2 + driven)
+        lead = (e1 * np.sin(psi1 + alpha) + e2 * np.sin(psi2 - alpha)) / pair.wheel.base_radius
+        total += rate * (lead - lead[0])
+    return total
+
+
+def test_the_transmission_error_of_a_helical_train_is_that_of_its_transverse_sections(tmp_path: Path) -> None:
+    """Either flank side; what rests, such as the shaft's place along its axis, drops out."""
+    gears = two_stages((1, 1), (1, 1))
+    chain(gears, TWO, f"{RUNNING}{plays()}", tmp_path)
+    path = tmp_path / "chain.yaml"
+    text = path.read_text().replace("driver: C,", "driver: C, working_flank: left,")
+    path.write_text(text.replace("study:", f"{CURVES}study:"))
+    model = model_of_scene(path)
+    trials = drawn_trials(model, 1, 0, 1)
+    squares = 7e-7  # (17 um)²/(20 mm)²
+    method = GeometricMethod(model, exact_engine(model))
+    measures = [measure_of(model, name) for name in ("drive", "back")]
+    by_method = method.answers(trials, measures).values, AnalyticMethod(model).answers(trials, measures).values
+    for name, flank in (("drive", 1), ("back", -1)):
+        by_hand = wave(gears, model, flank)
+        assert np.ptp(by_hand) > 1e-4
+        geometric, analytic = (own[name][0] for own in by_method)
+        assert analytic == pytest.approx(by_hand, abs=1e-12)
+        assert geometric == pytest.approx(by_hand, abs=squares)
+        if name == "drive":
+            between = gear_columns(model, exact_engine(model), trials)["geometric:range"][0] / ARCMIN
+            assert np.ptp(geometric) <= between < 1.005 * np.ptp(geometric)  # a parabola over 30 positions a turn
+
+
+# bearings that follow the tooth force ---------------------------------------------------------------------------------
+
+
+def loads_of(gear: Helical, teeth: tuple[float, float, float], places: tuple[float, float], ccw: bool) -> np.ndarray:
+    """Loads (2, 3) of a driver on two bearings by equilibrium in space, in units of the tangential force.
+
+    Args:
+        gear: that drives.
+        teeth: its place along the shaft [mm], the azimuth of the mesh in the shaft's frame, the working pressure angle.
+        places: of the bearings [mm]; the first one takes the thrust.
+        ccw: whether the gear turns counter-clockwise about its own z.
+
+    Its mate holds it back, pushes it away, and pushes a right hand that turns counter-clockwise along +z.
+    """
+    at, azimuth, alpha = teeth
+    outwards = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
+    z = np.array([0.0, 0.0, float(gear.sense)])
+    sense = 1.0 if ccw else -1.0
+    radius = gear.radius * math.cos(math.atan(math.tan(math.radians(20.0)) / math.cos(gear.helix))) / math.cos(alpha)
+    tan_w = math.tan(gear.helix) * radius / gear.radius
+    force = -sense * np.cross(z, outwards) - math.tan(alpha) * outwards + gear.hand * sense * tan_w * z
+    point = radius * outwards + np.array([0.0, 0.0, at])
+    rows = np.zeros((6, 5))  # of x, y of both and z of the first
+    for k, (bearing, axis) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1), (0, 2))):
+        unit = np.eye(3)[axis]
+        rows[:3, k], rows[3:, k] = unit, np.cross([0.0, 0.0, places[bearing]], unit)
+    moment = np.cross(point, force)
+    moment[2] = 0.0  # the motor's
+    found, *_ = np.linalg.lstsq(rows, np.concatenate([force, moment]), rcond=None)
+    assert rows @ found == pytest.approx(np.concatenate([force, moment]), abs=1e-9)
+    return np.array([[found[0], found[1], found[4]], [found[2], found[3], 0.0]])
+
+
+@pytest.mark.parametrize("flank", ["left", "right"])
+@pytest.mark.parametrize("hand", [1, -1])
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("places", [(0.0, 70.0), (48.0, 90.0)])
+def test_bearings_of_a_helical_gear_move_where_statics_push_them(
+    flank: str, hand: int, sense: int, places: tuple[float, float], tmp_path: Path
+) -> None:
+    """The gear C at 30 mm, between its bearings and beyond both; a driver's left flank works where it turns ccw."""
+    gears = two_stages((1, hand), (1, sense))
+    chain(gears, TWO, plays(), tmp_path)
+    path = tmp_path / "chain.yaml"
+    clearances = "".join(
+        f"  {name} play: {{kind: bearing_clearance, of: {name}, mesh: second, direction: tooth_force, "
+        "distribution: {kind: constant, value: 10 um}}\n"
+        for name in ("low", "high")
+    )
+    bearings = "".join(
+        f"  {name}: {{kind: bearing, shaft: two, at: {at} mm}}\n"
+        for name, at in zip(("low", "high"), places, strict=True)
+    )
+    text = path.read_text().replace("tolerances:\n", f"{bearings}tolerances:\n{clearances}")
+    path.write_text(text.replace("driver: C,", f"driver: C, working_flank: {flank},"))
+    model = model_of_scene(path)
+    pair = model.mesh("second").pair
+    azimuth = sense * math.radians(33.0)  # counted in the gear's frame, which is turned about x
+    loads = loads_of(gears["C"], (30.0, azimuth, pair.working_pressure_angle), places, flank == "left")
+    for name, load in zip(("low", "high"), loads, strict=True):
+        effect = next(own for own in model.contributors if own.name == f"{name} play").effect
+        moved = next(one for one in effect.singles if isinstance(one, AxisOffset) and one.part == "C")
+        x, y, _ = moved.direction
+        lever = moved.factor * np.array([x, sense * y])  # in the shaft's frame
+        at, other = places if name == "low" else reversed(places)
+        own = lever / ((30.0 - other) / (at - other)) / 0.5
+        assert own == pytest.approx(load[:2] / np.hypot(*load[:2]), abs=1e-12)
+
+
+def test_the_tooth_force_of_a_helical_gear_needs_two_bearings(tmp_path: Path) -> None:
+    chain(two_stages((1, 1)), TWO, plays(), tmp_path)
+    path = tmp_path / "chain.yaml"
+    force = "direction: tooth_force, distribution: {kind: constant, value: 9 um}"
+    play = f"  play: {{kind: bearing_clearance, of: only, mesh: second, {force}}}"
+    bearing = "  only: {kind: bearing, shaft: two}"
+    path.write_text(path.read_text().replace("tolerances:", f"{bearing}\ntolerances:\n{play}"))
+    with pytest.raises(SceneError, match=r"play\.direction: expected apart, random, .* or a second bearing, got"):
+        model_of_scene(path)

@@ -233,7 +233,7 @@ def test_what_was_never_derived_or_does_not_mesh_is_refused(scene: Scene, change
             "tolerances",
             "b: {kind: bearing_clearance, of: left, direction: tooth_force, mesh: gear pair,\n"
             "    distribution: {kind: normal, lower: 2 um, upper: 20 um}}",
-            "tolerances.b.direction: expected apart, random or {at: …}, got tooth_force",
+            "tolerances.b.direction: expected apart, random, {at: …} or a second bearing, got tooth_force",
         ),
     ],
 )

@@ -184,7 +184,7 @@ def test_the_net_agrees_with_the_rule_for_two_tilts_that_do_nothing_else(tmp_pat
     group = [contributor for contributor in model.contributors if contributor.name in ("tilt", "skew")]
     by_rule = {share.name: share for share in form.shares}
     total = sum(by_rule[contributor.name].variance for contributor in group)
-    for share in leaning_shares([(1.0, stack_of(model, model.mesh("first"), Reading()))], group):
+    for share in leaning_shares([(1.0, stack_of(model, model.mesh("first"), Reading()))], group, {}):
         assert share.mean == pytest.approx(by_rule[share.name].mean, abs=NET * math.sqrt(total))
         assert share.variance == pytest.approx(by_rule[share.name].variance, abs=NET * total)
 

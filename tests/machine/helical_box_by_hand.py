@@ -25,6 +25,7 @@ APART: Final = 190.0
 SPAN: Final = 276.0  # from the middle of one end wall to that of the other
 ALPHA: Final = math.radians(20)
 STEEL, IRON = 11.5e-6, 10.5e-6
+GROOVES: Final = 0.04 * 12.7  # between the centres of both grooves of a 6210, whose balls touch both
 SERIES: Final = {"cd25": (-145.0, -95.0), "c25": (-165.0, -115.0), "c26": (-195.0, -115.0)}
 """DIN 3967 for reference diameters of 125 to 280 mm [um], as its tables print them."""
 
@@ -188,6 +189,13 @@ PER_FIRST: Final = SECOND.driver.teeth / SECOND.driven.teeth / (FIRST.driven.bas
 PER_SECOND: Final = 1 / (SECOND.driven.base * SECOND.cosine)
 """Turn of the output by the normal backlash of each stage [rad/mm]."""
 
+SLIDING: Final = {
+    "input": abs(FIRST.driven.twist) * SECOND.driver.teeth / SECOND.driven.teeth,
+    "middle": abs(FIRST.driven.twist - SECOND.driver.twist) * SECOND.driver.teeth / SECOND.driven.teeth,
+    "output": abs(SECOND.driven.twist),
+}
+"""Turn of the output by the axial play of each shaft [rad/mm]: the thrust of a mesh moves what slides as it yields."""
+
 
 def limits(tolerance: str) -> tuple[float, float]:
     """Lower and upper limit of a distribution."""
@@ -277,9 +285,13 @@ def by_involutes(columns: Columns, stage: Stage) -> Array:
     return np.asarray(free - lost(columns, stage, slopes))
 
 
-def lost_motion(first: Array, second: Array) -> Array:
-    """Free turn of the output [rad] by the normal backlashes of both stages (trials,)."""
-    return np.asarray(PER_FIRST * first + PER_SECOND * second)
+def lost_motion(columns: Columns, first: Array, second: Array) -> Array:
+    """Free turn of the output [rad] by the normal backlashes of both stages, and by shafts that slide (trials,)."""
+    plays = {shaft: columns[f"{shaft} axial play [um]"] / 1000 for shaft in ("middle", "output")}
+    across = np.hypot(*(columns[f"input bearing clearance.{way} [um]"] / 1000 for way in "xy"))
+    plays["input"] = 2 * np.sqrt(GROOVES**2 - (GROOVES - across / 2) ** 2)
+    slid = sum(rate * plays[shaft] for shaft, rate in SLIDING.items())
+    return np.asarray(PER_FIRST * first + PER_SECOND * second + slid)
 
 
 def own_draws(count: int, seed: int) -> dict[str, Array]:
@@ -295,6 +307,8 @@ def own_draws(count: int, seed: int) -> dict[str, Array]:
             case "position":
                 for end in ("start", "end"):
                     add(f"{name}.{end} ", in_disc(draws, count, number(said["zone"]["diameter"]) / 2))
+            case "axial_play":
+                found[f"{name} [um]"] = 1000 * draws.uniform(*limits(name), count)
             case "bearing_clearance":
                 length, angle = draws.uniform(*limits(name), count), 2 * math.pi * draws.random(count)
                 add(f"{name}.", np.stack([length * np.cos(angle), length * np.sin(angle)], axis=1))

@@ -122,13 +122,16 @@ def test_the_papers_published_columns_agree_with_its_own_formulas() -> None:
 # every field --------------------------------------------------------------------------------------
 
 
-def shoulders() -> tuple[str, str]:
-    """The document's train, with a distribution of its reducer's backlash and with the data sheet's word for it."""
-    (shoulder,) = quoted("trains")
+def shoulders() -> tuple[str, str, str]:
+    """The document's train, with a distribution of its reducer's backlash and with the data sheet's word for it.
+
+    And that of helical gears whose shafts slide.
+    """
+    shoulder, sliding = quoted("trains")
     drawn = re.search(r"  reducer play:\n(    .*\n)+", shoulder)
     assert drawn
     by_data_sheet = shoulder.replace(drawn[0], "").replace("    ratio: 152 ", "    backlash: 1 arcmin\n    ratio: 152 ")
-    return shoulder, by_data_sheet
+    return shoulder, by_data_sheet, sliding
 
 
 HELICAL = """\

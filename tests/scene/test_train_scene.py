@@ -19,7 +19,7 @@ from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceS
 from tol3d.kinds import all_kinds
 from tol3d.scene.entry import any_of
 
-(SHOULDER,) = quoted("trains")
+SHOULDER, _ = quoted("trains")
 
 LENGTH = 'expected a length with its unit, such as "4.5 um", got'
 SHAFT = "expected the name of a shaft, or of a gear that none carries, got"

@@ -18,6 +18,7 @@ LONG = (
     "bolted_cover",
     "bracket_in_box",
     "every_assembly_field",
+    "helical_gearbox",
     "hole_and_slot",
     "housed_gears",
     "lid_by_a_wall",

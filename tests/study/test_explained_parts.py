@@ -26,7 +26,10 @@ from tol3d.study.tallies.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.study.trials.columns import columns_of
 from tol3d.study.trials.draws import drawn
 
-LONG = ("every_assembly_field", "hole_and_slot", "gearbox_in_housing", "housed_gears", "bolted_cover", "box_with_discs")
+LONG = (
+    *("every_assembly_field", "hole_and_slot", "gearbox_in_housing", "helical_gearbox", "housed_gears"),
+    *("bolted_cover", "box_with_discs"),
+)
 METHODS: Mapping[str, Any] = {
     "door": TorsorMethod,
     "cover_on_base": TorsorMethod,

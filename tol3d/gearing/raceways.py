@@ -64,7 +64,7 @@ class DeepGroove:
     def deviation(self, measured: Array) -> Array:
         """See Scale: radial clearances of axial ones [mm]; an axial one below 0 is a radial one below 0."""
         half = np.minimum(np.abs(measured) / 2, self.apart)
-        return np.sign(measured) * 2 * half**2 / (self.apart + np.sqrt(self.apart**2 - half**2))
+        return np.asarray(np.sign(measured) * 2 * half**2 / (self.apart + np.sqrt(self.apart**2 - half**2)))
 
     def measured(self, deviation: Array) -> Array:
         """See Scale."""

@@ -123,15 +123,19 @@ def readings_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 
 def forces_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
-    """Bearings of a shaft that move along the tooth force of a helical gear, whose thrust turns it at each bearing."""
+    """Bearings that move along the tooth force of a helical gear, and no other one takes the couple of its thrust."""
+    helical = helical_gears(scene)
     for name, spec in scene.of(BearingClearanceSpec).items():
         bearing = scene.parts[spec.of]
         if spec.direction != "tooth_force" or not isinstance(bearing, BearingSpec):
             continue
-        gear = next((g for g in gears_on(bearing.shaft, scene.parts) if g in helical_gears(scene)), None)
-        if gear is not None:
-            words = "expected apart, random or {at: …}, got tooth_force: the thrust of the helical gear "
-            yield ("tolerances", str(name), "direction"), f"{words}{gear!r} turns the force at each bearing its own way"
+        gear = next((g for g in gears_on(bearing.shaft, scene.parts) if g in helical), None)
+        bearings = [own for own in scene.of(BearingSpec).values() if own.shaft == bearing.shaft]
+        if gear is not None and len(bearings) < 2:
+            words = (
+                "expected apart, random, {at: …} or a second bearing, got tooth_force: the thrust of the helical gear "
+            )
+            yield ("tolerances", str(name), "direction"), f"{words}{gear!r} would turn the shaft over"
 
 
 def steep_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:

@@ -47,8 +47,6 @@ from tol3d.study.system.measure import Measure
 from tol3d.study.system.plain import stated_of
 from tol3d.study.system.stated import component_slices
 
-KIND = "shaft_in_bores"
-
 
 def machine_system(scene: Scene) -> MachineSystem:
     """System of gears in a housing, from its scene.
@@ -213,7 +211,7 @@ def _by_bores(model: Model, bores: Bores) -> Iterator[Contributor]:
         for k in range(2):
             yield Contributor(
                 name=displacement_name(shaft, k),
-                kind=KIND,
+                kind="shaft_in_bores",
                 effect=_effect(model, shaft, k, places),
                 draw=Planar(Constant(0.0), None),
                 unit="um",

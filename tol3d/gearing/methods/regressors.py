@@ -50,7 +50,7 @@ def regressor_key(measure: Measure) -> Hashable:
     """Measures of one key have the same regressors."""
     kind = measure.kind
     read = tuple(replace(backlash, quantity="normal_backlash", gear="") for _, backlash in kind.backlashes)
-    return read, tuple(name for _, name in kind.links), measure.positions, measure.take == "value"
+    return read, tuple(name for _, name in kind.links), kind.sliding, measure.positions, measure.take == "value"
 
 
 def regress(
@@ -65,13 +65,18 @@ def regress(
             own[...] = 0.0
             own[0] = parts[contributor.name]
             continue
-        if is_group(contributor):
+        if is_group(contributor) or _slides_by_its_length(contributor, measure):
             regress_term(own, *_group_term(model, measure, contributor, columns))
             continue
         values = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
         _regress(own, contributor, values, turning)
         if contributor.name in parts:  # of a shaft: across the line of centres it has no effect on a mesh
             own[1] = parts[contributor.name]
+
+
+def _slides_by_its_length(contributor: Contributor, measure: Measure) -> bool:
+    """True of a clearance anywhere round an axis by which a shaft slides, which no component of it tells."""
+    return isinstance(contributor.draw, Planar) and any(map(contributor.effect.slides, measure.kind.sliding))
 
 
 def _parts_in_links(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Array]:

@@ -182,6 +182,9 @@ class BearingClearanceSpec(GearToleranceSpec):
         read = (lever.own for lever in levers if mesh and lever.own.gear in (mesh.driver, mesh.driven))
         gear = next(read, levers[0].own)
         seen = self._azimuth(gear.gear, nominal)
+        if self.direction == "tooth_force" and mesh and mesh.gear(gear.gear).twist:
+            towards = seen - _force_azimuth(mesh, gear.gear)
+            seen = towards + _load_azimuth(mesh, gear, at, others[0])
         azimuth = -seen if gear.backward and not isinstance(self.direction, At) else seen
         effects = [effect for lever in levers for effect in lever.towards(azimuth)]
         return Meaning(together([*effects, *slides]), least=0.0, scale=scale)
@@ -195,6 +198,27 @@ class BearingClearanceSpec(GearToleranceSpec):
         towards, opening = mesh.pair.mesh_azimuths[role], mesh.pair.opening_off_mesh[role]
         towards += mesh.azimuth if gear == mesh.driver else nominal.seat_azimuth(mesh.name)
         return towards + (opening if self.direction == "apart" else _force_azimuth(mesh, gear))
+
+
+def _load_azimuth(mesh: Mesh, own: Carried, at: float, other: float) -> float:
+    """Azimuth off the mesh [rad] of the load of a helical gear on one of two bearings, at places along the shaft [mm].
+
+    The gear's own flank sigma, hand h: the force of its mate at +x is cos(beta_b) times (-sin(alpha_wt),
+    sigma cos(alpha_wt), -sigma h tan(beta_b)); a ring is pulled towards the mesh. The thrust, F_z at the working circle
+    r_w, adds r_w F_z over the bearings' distance to the load of one of them along the line of centres, and takes it
+    from the other's.
+    """
+    pair, driver = mesh.pair, own.gear == mesh.driver
+    alpha, beta_b = pair.working_pressure_angle, math.acos(pair.base_helix_cosine)
+    flank = float(mesh.working_flank if driver else mesh.driven_flank)
+    away = math.cos(pair.opening_off_mesh[0 if driver else 1])
+    towards = away * math.sin(alpha) * math.cos(beta_b)
+    onwards = flank * math.cos(alpha) * math.cos(beta_b)
+    thrust = -flank * math.copysign(math.sin(beta_b), mesh.gear(own.gear).twist)
+    here, there = (own.sense * (place - own.at) for place in (at, other))
+    radius = pair.working_radii[0 if driver else 1]
+    share = there / (there - here)
+    return math.atan2(share * onwards, share * towards + radius * thrust / (there - here))
 
 
 def _force_azimuth(mesh: Mesh, gear: str) -> float:
