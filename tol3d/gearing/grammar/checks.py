@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from tol3d.gearing.grammar.measures import FlankMeasureSpec
-from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec, ReducerSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec, HelicalMoveSpec, MeshSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import (
     BearingSpec,
     BoredGearSpec,
@@ -72,17 +72,15 @@ def helical_gears(scene: Scene) -> Mapping[str, HelicalGearSpec | InternalGearSp
 
 
 def helices_elsewhere(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
-    """Helical gears of scenes with other moves than meshes: what these compute of them was never derived."""
+    """Helical gears of scenes with moves that know none: what these compute of them was never derived."""
     for name, move in scene.moves.items():
-        if not isinstance(move, MeshSpec):
+        if not isinstance(move, HelicalMoveSpec):
             for gear, spec in helical_gears(scene).items():
                 ring = isinstance(spec, InternalGearSpec)
                 path: KeyPath = ("parts", gear, "helix_angle" if ring else "kind")
                 expected = f"0 deg, got {spec.helix_angle}" if ring else "a spur_gear"
-                yield (
-                    path,
-                    f"expected {expected}, for {name!r} is {move.words}: helical gears are simulated in meshes alone",
-                )
+                words = "helical gears are simulated in meshes and planetary sets alone"
+                yield path, f"expected {expected}, for {name!r} is {move.words}: {words}"
             return
 
 
