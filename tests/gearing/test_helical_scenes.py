@@ -20,7 +20,7 @@ from tol3d.gearing.grammar.parts import HelicalGearSpec
 from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Model, Reading
 from tol3d.gearing.stack_up import stack_of
-from tol3d.gears import SpurPair
+from tol3d.gears import InternalPair, SpurPair
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.bases import MoveSpec
@@ -33,7 +33,7 @@ scene: helical pair
 parts:
   pinion: {kind: helical_gear, teeth: %(z1)d, module: %(m)s mm, helix_angle: %(beta)s deg, hand: %(hand)s,
     face_width: %(b1)s mm, profile_shift: %(x1)s, expansion: 11.5e-6 1/K}
-  wheel: {kind: helical_gear, teeth: %(z2)d, module: %(m)s mm, helix_angle: %(beta)s deg, hand: %(mate)s,
+  wheel: {kind: %(wheel)s, teeth: %(z2)d, module: %(m)s mm, helix_angle: %(beta)s deg, hand: %(mate)s,
     face_width: %(b2)s mm, profile_shift: %(x2)s, expansion: 11.5e-6 1/K}
   case: {kind: housing, expansion: 23e-6 1/K}
 """
@@ -68,7 +68,11 @@ study: {trials: 100, seed: 1}
 """
 WORKED: dict[str, Any] = {
     "z1": 23, "z2": 67, "m": 1, "beta": 30, "hand": "right", "mate": "left", "b1": 16, "b2": 11, "x1": 0.55,
-    "x2": 0.5441135839, "a": 53,
+    "x2": 0.5441135839, "a": 53, "wheel": "helical_gear",
+}  # fmt: skip
+RING: dict[str, Any] = {
+    "wheel": "internal_gear", "z1": 27, "z2": 79, "beta": 15, "mate": "right", "b1": 12, "b2": 10, "x1": 0.2,
+    "x2": -0.2, "a": 26.917180691,
 }  # fmt: skip
 
 
@@ -85,6 +89,16 @@ def scene(tmp_path: Any) -> Scene:
     return load(path)
 
 
+@pytest.fixture
+def ring_scene(tmp_path: Any) -> Scene:
+    """The same of a gear in a ring."""
+    (path := tmp_path / "ring.yaml").write_text(text(**RING))
+    return load(path)
+
+
+BOTH_KINDS = pytest.mark.parametrize("kind", ["scene", "ring_scene"])
+
+
 def difference(model: Model, deviations: Array, angles: Array) -> Array:
     """Stack-up less exact normal backlash [mm], (rows,)."""
     engine, mesh = ExactEngine(model), model.meshes[0]
@@ -93,22 +107,28 @@ def difference(model: Model, deviations: Array, angles: Array) -> Array:
     return np.asarray(stack_of(model, mesh, Reading()).normal_backlash(deviations, angles) - found.gap)
 
 
-def random_model(rng: np.random.Generator, tmp_path: Any) -> Model:
+def random_model(rng: np.random.Generator, tmp_path: Any, *, inside: bool = False) -> Model:
     """A pair with all tolerances, at the distance at which its nominal teeth have no backlash."""
     while True:
         z1, z2 = rng.integers(18, 70, 2).tolist()
+        if inside:  # contact away from the pinion's base circle, and room for gears that grow by themselves
+            z1, z2 = max(24, min(z1, z2)), max(z1, z2) + 30
         beta, m = float(rng.uniform(8.0, 35.0)), float(rng.uniform(1.0, 4.0))
         hand, mate = ("right", "left") if rng.random() < 0.5 else ("left", "right")
+        mate = hand if inside else mate
         b1, b2, (x1, x2) = float(m * rng.uniform(8, 16)), float(m * rng.uniform(8, 16)), rng.uniform(0.0, 0.3, 2)
         own = {"z1": z1, "z2": z2, "m": m, "beta": beta, "hand": hand, "mate": mate, "b1": b1, "b2": b2}
         apart = m * ((z1 + z2) / 2 / math.cos(math.radians(beta)) + x1 + x2 + 0.05)
+        if inside:
+            own, x2 = {**own, "wheel": "internal_gear"}, -x1
+            apart = m * ((z2 - z1) / 2 / math.cos(math.radians(beta)) - 0.02)
         path = tmp_path / "random.yaml"
         try:
             for _ in range(2):
                 path.write_text(text(**own, x1=float(x1), x2=float(x2), a=f"{apart:.12f}"))
                 model = model_of_scene(path)
                 pair = model.meshes[0].pair
-                assert isinstance(pair, SpurPair)
+                assert isinstance(pair, SpurPair | InternalPair)
                 apart = pair.zero_backlash_centre_distance
         except SceneError:
             continue
@@ -116,15 +136,17 @@ def random_model(rng: np.random.Generator, tmp_path: Any) -> Model:
 
 
 @pytest.mark.slow
-def test_differences_of_the_methods_fall_to_a_quarter_as_deviations_are_halved(tmp_path: Any) -> None:
+@pytest.mark.parametrize("inside", [False, True])
+def test_differences_of_the_methods_fall_to_a_quarter_as_deviations_are_halved(inside: bool, tmp_path: Any) -> None:
     """All tolerances of random pairs at once; the backlash itself is one of them, as contact lines end j apart."""
     rng, ratios = np.random.default_rng(2), []
     for _ in range(60):
-        model = random_model(rng, tmp_path)
+        model = random_model(rng, tmp_path, inside=inside)
         deviations = rng.uniform(-1, 1, (60, model.component_count)) * 0.008
         for contributor in model.contributors:
             columns = model.component_slices[contributor.name]
-            deviations[:, columns] *= {"mrad": 0.01, "K": 500.0}.get(contributor.unit, 1.0)
+            kelvin = 100.0 if inside else 500.0  # tips of rings reach far where gears grow by themselves
+            deviations[:, columns] *= {"mrad": 0.01, "K": kelvin}.get(contributor.unit, 1.0)
             if contributor.kind == "tooth_thickness":
                 deviations[:, columns] -= 0.05
         angles = rng.uniform(-3.0, 3.0, len(deviations))
@@ -134,8 +156,9 @@ def test_differences_of_the_methods_fall_to_a_quarter_as_deviations_are_halved(t
     assert inside >= 0.95, sorted(ratios)
 
 
-def test_builds_at_their_tolerances_differ_by_tenths_of_a_micrometre(scene: Scene) -> None:
-    model = model_of_scene(scene)
+@BOTH_KINDS
+def test_builds_at_their_tolerances_differ_by_tenths_of_a_micrometre(kind: str, request: pytest.FixtureRequest) -> None:
+    model = model_of_scene(request.getfixturevalue(kind))
     rng = np.random.default_rng(5)
     rows = [
         contributor.draw.deviations(*(1.0 - rng.random((contributor.draw.uniforms, 500))))
@@ -171,13 +194,14 @@ def test_transmission_error_follows_contact_lines_of_tilted_axes(tmp_path: Any) 
     assert np.abs(by_stack - exact).max() < 0.15 * largest  # lines end where mates do that stand the backlash apart
 
 
-def test_axial_shifts_turn_the_mate_and_open_nothing(scene: Scene) -> None:
-    model = model_of_scene(scene)
+@BOTH_KINDS
+def test_axial_shifts_turn_the_mate_and_open_nothing(kind: str, request: pytest.FixtureRequest) -> None:
+    model = model_of_scene(request.getfixturevalue(kind))
     deviations = np.zeros((2, model.component_count))
     deviations[1, model.component_slices["wheel axial"]] = 0.05
     deviations[1, model.component_slices["pinion face"]] = -0.03
     engine, mesh = ExactEngine(model), model.meshes[0]
-    deviations[:, model.component_slices["distance"]] = 0.05  # room for the teeth
+    deviations[:, model.component_slices["distance"]] = 0.05 if kind == "scene" else -0.05  # room for the teeth
     found = engine.read(engine.build(deviations), mesh, Reading(), np.array([0.4, 0.4]))
     assert found.gap[0] == pytest.approx(found.gap[1], abs=1e-12)
     turned = mesh.pair.wheel.twist * 0.08
@@ -187,12 +211,13 @@ def test_axial_shifts_turn_the_mate_and_open_nothing(scene: Scene) -> None:
     assert aside[1] - aside[0] == pytest.approx(turned * mesh.pair.wheel.section_arm, abs=1e-15)
 
 
-def test_a_tilt_in_the_plane_of_the_axes_screws_the_teeth(scene: Scene) -> None:
+@BOTH_KINDS
+def test_a_tilt_in_the_plane_of_the_axes_screws_the_teeth(kind: str, request: pytest.FixtureRequest) -> None:
     """The middle of both rests turns by kappa2 r_w2 of it, beside what the contact lines take from either side."""
-    model = model_of_scene(scene)
+    model = model_of_scene(request.getfixturevalue(kind))
     deviations = np.zeros((2, model.component_count))
     deviations[1, model.component_slices["in plane"]] = 1e-4
-    deviations[:, model.component_slices["distance"]] = 0.05
+    deviations[:, model.component_slices["distance"]] = 0.05 if kind == "scene" else -0.05
     engine, mesh = ExactEngine(model), model.meshes[0]
     drive, back = engine.rests(engine.build(deviations), mesh, Reading(), np.array([0.4]))
     middle = (drive.driven_angle + back.driven_angle)[:, 0] / 2
@@ -219,6 +244,32 @@ def test_a_tilt_in_the_plane_of_the_axes_screws_the_teeth(scene: Scene) -> None:
 def test_what_was_never_derived_or_does_not_mesh_is_refused(scene: Scene, changed: dict[str, Any], words: str) -> None:
     with pytest.raises(SceneError, match=words):
         model_of_scene(scene.with_(changed))
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        (
+            {"parts.wheel.hand": "left"},
+            "moves.gear pair.driven: a helical gear and its ring need the same hand, got right and left",
+        ),
+        ({"parts.wheel.helix_angle": "14 deg"}, "gears on parallel axes need the same helix_angle, got 15 deg and 14"),
+        ({"parts.wheel.helix_angle": "-15 deg"}, "expected an angle of zero or more .hand gives the sense"),
+        ({"parts.wheel.hand": None}, "parts.wheel.hand: expected right or left beside a helix_angle of 15 deg, got n"),
+        (
+            {"tolerances.wheel thickness.measured": {"span": 5}},
+            "tolerances.wheel thickness.measured.span: an internal helical gear has no span.*such as .balls: 1.65 mm",
+        ),
+        (
+            {"tolerances.wheel thickness.measured": {"pins": "1.7 mm"}},
+            "tolerances.wheel thickness.measured.pins: straight pins cut the flanks .*such as .balls: 1.65 mm",
+        ),
+        ({"measures.arc.read_at": "mean_section"}, "measures.arc.read_at: expected face, got mean_section"),
+    ],
+)
+def test_rings_that_do_not_mesh_are_refused(ring_scene: Scene, changed: dict[str, Any], words: str) -> None:
+    with pytest.raises(SceneError, match=words):
+        model_of_scene(ring_scene.with_(changed))
 
 
 @pytest.mark.parametrize(
@@ -284,11 +335,25 @@ def test_check_prints_the_helix_and_sizes_over_balls(scene: Scene) -> None:
         assert label in said
 
 
+def test_check_prints_a_helical_ring_between_balls_alone(ring_scene: Scene) -> None:
+    said = printed(check_scene(ring_scene))
+    for label in (
+        "79, inside",
+        "15, right   15, right",
+        "arc s_n, normal section",
+        "outer diameter",
+        "between balls of",
+    ):
+        assert label in said
+    assert "over 4 spaces" not in said
+    assert "between pins of" not in said
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(8))
 def test_the_witness_agrees_within_its_chord_error(seed: int, tmp_path: Any) -> None:
-    """FCL on strips between generators of the CAD flanks, six random pairs with every tolerance."""
-    model = random_model(np.random.default_rng(70 + seed), tmp_path)
+    """FCL on strips between generators of the CAD flanks, random pairs with every tolerance, the last two of rings."""
+    model = random_model(np.random.default_rng(70 + seed), tmp_path, inside=seed > 5)
     strips = {part.name: measuring_strips(part.gear, 96) for part in model.gears}
     trials = drawn_trials(model, 1, 0, 6)
     measures = [measure_of(model, "normal backlash"), measure_of(model, "arc")]

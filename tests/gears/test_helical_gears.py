@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from tol3d.gears.tooth_measures import OverBalls, OverPins, PinScale, Span, pins
 
 ALPHA = math.radians(20.0)
 CLOSED_FORM = 1e-9  # mm
+AnyGear = TypeVar("AnyGear", SpurGear, InternalGear)
 ROUNDED = 5e-10  # mm and rad; what worked cases are printed to, in um and mrad
 
 
@@ -102,6 +103,124 @@ def test_a_spur_gear_of_either_hand_is_the_same_to_the_last_bit() -> None:
     assert spur.section_arm == spur.base_radius == 2.5 * 17 / 2 * math.cos(ALPHA)
 
 
+def ring_pair() -> InternalPair:
+    """27 teeth in 79, right-hand, 15 deg, thinned by 60 and 80 um."""
+    inner = helical(27, 1.0, 15.0, RIGHT_HAND, 12.0, profile_shift=0.2, tooth_thickness_deviation=-0.06)
+    return InternalPair(
+        inner,
+        InternalGear(
+            79, 1.0, ALPHA, 10.0, profile_shift=-0.2, tooth_thickness_deviation=-0.08, helix_angle=math.radians(15.0)
+        ),
+        26.917180691,
+    )
+
+
+def test_backlash_and_twist_of_the_worked_pair_in_a_ring() -> None:
+    pair = ring_pair()
+    assert pair.normal_backlash == pytest.approx(131.556967e-3, abs=ROUNDED)
+    assert float(pair.driven_angle(np.array(0.3))) == pytest.approx(0.142298641, abs=ROUNDED)
+    assert pair.ring.twist == pytest.approx(0.006552381, abs=ROUNDED)
+    assert pair.inner.base_radius * pair.inner.twist == pytest.approx(
+        pair.ring.base_radius * pair.ring.twist, rel=1e-14
+    )
+    pair.refuse_interference()
+    turned = InternalPair(pair.ring, pair.inner, pair.centre_distance)
+    assert turned.normal_backlash == pytest.approx(pair.normal_backlash, abs=1e-15)
+    assert turned.total_contact_ratio == pytest.approx(pair.contact_ratio + pair.overlap_ratio, rel=1e-12)
+
+
+def test_a_ring_whose_helix_vanishes_is_the_spur_ring() -> None:
+    spur = InternalGear(79, 1.0, ALPHA, 10.0, profile_shift=-0.2, tooth_thickness_deviation=-0.05)
+    leaning = replace(spur, helix_angle=1e-8)
+    for name in (own for own in PROPERTIES if not own.startswith("undercut")):
+        assert getattr(leaning, name) == pytest.approx(getattr(spur, name), rel=1e-12, abs=1e-12), name
+        assert getattr(replace(spur, hand=LEFT_HAND), name) == getattr(spur, name)
+    inner = SpurGear(27, 1.0, ALPHA, 12.0, profile_shift=0.2)
+    ours = InternalPair(replace(inner, helix_angle=1e-8), leaning, 25.98)
+    theirs = InternalPair(inner, spur, 25.98)
+    assert ours.normal_backlash == pytest.approx(theirs.normal_backlash, abs=1e-12)
+    assert OverBalls(1.7).size(leaning) == pytest.approx(OverPins(1.7).size(spur), abs=1e-12)
+
+
+def test_size_between_balls_of_the_worked_ring() -> None:
+    """As 2 r_K - D by a search of the flanks; its slope by E_sn is the printed one."""
+    ring = InternalGear(
+        60, 2.0, ALPHA, 20.0, helix_angle=math.radians(20.0), hand=LEFT_HAND, tooth_thickness_deviation=-0.1
+    )
+    balls, step = OverBalls(3.5), 1e-5
+    assert balls.size(ring) == pytest.approx(122.822790668, abs=ROUNDED)
+    ends = [balls.size(_as_thick(ring, ring.tooth_thickness + off)) for off in (-step, step)]
+    assert (ends[1] - ends[0]) / (2 * step) == pytest.approx(-2.973550, abs=5e-7)
+
+
+@pytest.mark.parametrize("measure", [Span(5), OverPins(3.5)])
+def test_helical_rings_are_measured_between_balls_alone(measure: Span | OverPins) -> None:
+    ring = InternalGear(60, 2.0, ALPHA, 20.0, helix_angle=math.radians(20.0))
+    with pytest.raises(GeometryError, match=r"measure between balls, such as \{balls: 3\.3 mm\}"):
+        measure.require_reach(ring)
+    measure.require_reach(replace(ring, helix_angle=0.0))
+    OverBalls(3.5).require_reach(ring)
+    assert span_of(ring) is None
+    assert isinstance(pins_of(ring), OverBalls)
+
+
+def test_balls_that_touch_the_middle_of_a_ring_s_flank_are_proposed() -> None:
+    for beta, shift in ((10.0, -0.2), (25.0, 0.0), (35.0, 0.1)):
+        ring = InternalGear(70, 2.0, ALPHA, 20.0, profile_shift=shift, helix_angle=math.radians(beta), addendum=0.9)
+        balls = pins_of(ring)
+        assert balls is not None
+        wanted = ring.reference_radius - shift * ring.module
+        assert balls.touches_at(ring) == pytest.approx(wanted, abs=0.05)
+
+
+def random_rings(count: int) -> list[tuple[InternalGear, ScrewGear]]:
+    """Rings of ours and the oracle's, odd and even teeth, both hands."""
+    rng, found = np.random.default_rng(53), list[tuple[InternalGear, ScrewGear]]()
+    while len(found) < count:
+        teeth, module, beta = int(rng.integers(40, 120)), float(rng.uniform(0.8, 6.0)), math.radians(rng.uniform(5, 40))
+        hand: Hand = RIGHT_HAND if rng.random() < 0.5 else LEFT_HAND
+        shift, thinner = float(rng.uniform(-0.3, 0.2)), float(rng.uniform(0, 0.05)) * module
+        own = {"helix_angle": beta, "hand": hand, "profile_shift": shift, "addendum": 0.9}
+        try:
+            ring = InternalGear(teeth, module, ALPHA, 10 * module, tooth_thickness_deviation=-thinner, **own)
+        except GeometryError:
+            continue
+        screw = ScrewGear(teeth, module, ALPHA, beta, hand, 10 * module, shift, thinner, 0.9, True)
+        found.append((ring, screw))
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("ring", "screw"), random_rings(8))
+def test_balls_in_rings_are_those_of_sampled_flanks(ring: InternalGear, screw: ScrewGear) -> None:
+    balls = pins_of(ring)
+    assert balls is not None
+    radius = (balls.size(ring) + balls.diameter) / 2 / (math.cos(math.pi / 2 / ring.teeth) if ring.teeth % 2 else 1.0)
+    assert ball_distance(screw, radius) == pytest.approx(balls.diameter / 2, abs=CLOSED_FORM)
+    low, high = ring.tooth_thickness - 0.02 * ring.module, ring.tooth_thickness
+    again = [balls.thickness(ring, balls.size(_as_thick(ring, own))) for own in (low, high)]
+    assert again == pytest.approx([low, high], abs=1e-10)
+    off, scale = ring.module * np.array([-0.03, 0.0, 0.02]), PinScale(ring, balls)
+    assert np.abs(scale.deviation(scale.measured(off)) - off).max() < 1e-10
+    lean = math.atan(ring.twist * radius)  # a straight pin along the space cuts the flanks that a ball touches
+    assert pin_distance(screw, radius, lean) < balls.diameter / 2 - 1e-6
+
+
+def test_a_thin_helical_gear_goes_into_its_ring_sideways_a_wide_one_along_its_helix_alone() -> None:
+    """Over a wide face all phases of a pitch meet; a thin gear passes where it is turned to one at which it does."""
+    beta = math.radians(20.0)
+    leaning = InternalPair(
+        helical(20, 1.0, 20.0, RIGHT_HAND, 30.0, addendum=0.9),
+        InternalGear(32, 1.0, ALPHA, 30.0, addendum=0.9, helix_angle=beta),
+        6.0 / math.cos(beta) - 0.03,
+    )
+    narrow = InternalPair(
+        replace(leaning.inner, face_width=0.01), replace(leaning.ring, face_width=0.01), leaning.centre_distance
+    )
+    assert leaning.overlap_ratio > 1.0
+    assert (leaning.radially_assembled, narrow.radially_assembled) == (False, True)
+
+
 def test_span_of_the_worked_gear_and_the_face_it_needs() -> None:
     gear = helical(23, 1.0, 30.0, RIGHT_HAND, 16.0, profile_shift=0.55)
     assert Span(5).size(gear) == pytest.approx(14.145235271, abs=ROUNDED)
@@ -160,7 +279,7 @@ def test_span_balls_and_pins_are_those_of_sampled_flanks(gear: SpurGear, screw: 
         assert np.abs(scale.deviation(scale.measured(off)) - off).max() < 1e-10
 
 
-def _as_thick(gear: SpurGear, thickness: float) -> SpurGear:
+def _as_thick(gear: AnyGear, thickness: float) -> AnyGear:
     return replace(gear, tooth_thickness_deviation=gear.tooth_thickness_deviation + thickness - gear.tooth_thickness)
 
 
@@ -211,10 +330,13 @@ def test_gears_whose_axes_would_cross_are_refused() -> None:
         SpurPair(pair.pinion, replace(pair.wheel, helix_angle=math.radians(29.0)), 53.0)
     with pytest.raises(GeometryError, match="same helix_angle, got 30 deg and 0 deg"):
         SpurPair(pair.pinion, replace(pair.wheel, helix_angle=0.0), 53.0)
-    with pytest.raises(GeometryError, match="internal helical gears are not supported"):
-        InternalGear(79, 1.0, ALPHA, 10.0, helix_angle=0.1)
-    with pytest.raises(GeometryError, match="a helical gear meshes with external gears only"):
-        InternalPair(helical(27, 1.0, 5.0, RIGHT_HAND, 10.0), InternalGear(79, 1.0, ALPHA, 9.0, addendum=0.8), 26.0)
+    inner, outer = ring_pair().inner, ring_pair().ring
+    with pytest.raises(GeometryError, match="a helical gear and its ring need the same hand, got right and left"):
+        InternalPair(inner, replace(outer, hand=LEFT_HAND), 26.9)
+    with pytest.raises(GeometryError, match="same helix_angle, got 15 deg and 0 deg"):
+        InternalPair(inner, replace(outer, helix_angle=0.0), 26.9)
+    with pytest.raises(GeometryError, match="helix_angle: expected 0 to 60 deg, got 63"):
+        replace(outer, helix_angle=1.1)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from tol3d.gearing.grammar.measures import FlankMeasureSpec
-from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec, ReducerSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec, HelicalMoveSpec, MeshSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import (
     BearingSpec,
     BoredGearSpec,
@@ -77,14 +77,17 @@ def helices_elsewhere(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Helical gears that moves other than meshes name: what these compute of them was never derived."""
     helical = helical_gears(scene)
     for name, move in scene.moves.items():
-        if isinstance(move, MeshSpec):
+        if isinstance(move, HelicalMoveSpec):
             continue
         own = [reference.name for reference in move.references() if not isinstance(reference, ShaftReference)]
         for gear in (gear for gear in helical if gear in own):
             ring = helical[gear] if isinstance(helical[gear], InternalGearSpec) else None
             field, expected = ("helix_angle", f"0 deg, got {ring.helix_angle}") if ring else ("kind", "a spur_gear")
             words = f"expected {expected}, for {name!r} is {move.words}"
-            yield ("parts", gear, field), f"{words}: helical gears are simulated in meshes and trains alone"
+            yield (
+                ("parts", gear, field),
+                f"{words}: helical gears run in meshes and planetary sets alone",
+            )
 
 
 def second_axial_plays(scene: Scene) -> Iterator[tuple[KeyPath, str]]:

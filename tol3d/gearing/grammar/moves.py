@@ -80,12 +80,16 @@ class GearMeshSpec(MoveSpec):
             yield Reference((field,), getattr(self, field), self.gear_specs)
 
 
+class HelicalMoveSpec(MoveSpec):
+    """A move whose gears may be helical; what other moves would compute of them was never derived."""
+
+
 def meshes_of(gear: str, moves: Mapping[str, MoveSpec]) -> tuple[str, ...]:
     """Names of the meshes in which a gear takes part."""
     return tuple(name for name, move in moves.items() if isinstance(move, GearMeshSpec) and gear in move.gears)
 
 
-class MeshSpec(GearMeshSpec):
+class MeshSpec(GearMeshSpec, HelicalMoveSpec):
     """A mesh: its world has the driver's axis as z, and the teeth meet at +x.
 
     The driven axis lies at the centre distance, at +x; that of a driven internal gear at -x, for it is around its mate.

@@ -28,9 +28,10 @@ def problems_at(planetary_set: PlanetarySet, deviated: Deviated, shaft: str) -> 
 
 def _interfering(mesh: SetMesh, backlash: float) -> str:
     side = "least" if mesh.sense > 0 else "largest"
+    normal = 1e3 * backlash * mesh.central.base_helix_cosine
     return (
-        f"the teeth interfere at the mean build: {mesh.name} has a normal backlash of {1e3 * backlash:.3f} um there "
-        f"(nominal {2e3 * mesh.clearance:.3f} um); the {side} centre distance of the nominal teeth is "
+        f"the teeth interfere at the mean build: {mesh.name} has a normal backlash of {normal:.3f} um there "
+        f"(nominal {1e3 * mesh.normal_backlash:.3f} um); the {side} centre distance of the nominal teeth is "
         f"{mesh.tight_centre_distance:.4f} mm, got {mesh.centre_distance:.4f} mm. Change it or the profile shifts, or "
         "thin the teeth"
     )

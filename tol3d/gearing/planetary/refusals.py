@@ -2,17 +2,21 @@
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 from tol3d.errors import GeometryError
-from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
+from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec, helix_of
 from tol3d.gearing.model.pairs import cylindrical_gear, cylindrical_pair
 from tol3d.gearing.planetary.grammar.moves import PlanetarySpec
 from tol3d.gearing.planetary.grammar.parts import FlexibleCarrierSpec, PlanetSpec
 from tol3d.gearing.planetary.model.planetary_set import PlanetarySet, Spring
 from tol3d.gearing.planetary.model.set_mesh import SetGear, SetMesh
 from tol3d.gearing.reducers.from_scene import unlike
+from tol3d.gears.cylindrical_pair import crossed_axes
 from tol3d.scene import Scene
+
+CENTRALS: Final = ("spur_gear", "helical_gear", "internal_gear")
+"""Kinds of gear that planets mesh with."""
 
 
 def set_of(scene: Scene, name: str, spec: PlanetarySpec) -> PlanetarySet:
@@ -43,7 +47,7 @@ def _gear(scene: Scene, name: str) -> SetGear:
     assert isinstance(spec, GearSpec)
     return SetGear(
         name, spec.teeth, spec.module.internal, spec.pressure_angle.internal, spec.profile_shift, spec.addendum,
-        isinstance(spec, InternalGearSpec),
+        isinstance(spec, InternalGearSpec), helix_of(spec)[0],
     )  # fmt: skip
 
 
@@ -51,8 +55,8 @@ def _set(scene: Scene, name: str, spec: PlanetarySpec) -> PlanetarySet:
     planet = scene.parts[spec.planet]
     assert isinstance(planet, PlanetSpec)
     for k, gear in enumerate(planet.gears):
-        if scene.parts[gear].kind != "spur_gear":
-            raise scene.refuse(("parts", spec.planet, "gears", k), f"expected spur gears, got {gear!r}")
+        if scene.parts[gear].kind not in ("spur_gear", "helical_gear"):
+            raise scene.refuse(("parts", spec.planet, "gears", k), f"expected spur or helical gears, got {gear!r}")
     _refuse_misnamed(scene, name, spec, planet)
     pairs = [(_gear(scene, central), _gear(scene, gear)) for central, gear in spec.meshes.items()]
     for central, own in pairs:
@@ -62,6 +66,7 @@ def _set(scene: Scene, name: str, spec: PlanetarySpec) -> PlanetarySet:
     else:
         central, own = pairs[0]
         distance = central.module * (central.teeth + (-1 if central.is_ring else 1) * own.teeth) / 2
+        distance /= math.cos(central.helix_angle)
     for central, own in pairs:
         _refuse_no_mesh(scene, name, SetMesh(central, own, distance))
     return PlanetarySet(
@@ -84,8 +89,8 @@ def _refuse_misnamed(scene: Scene, name: str, spec: PlanetarySpec, planet: Plane
         if gear not in planet.gears:
             words = f"expected a gear of {spec.planet!r}: {', '.join(planet.gears)}, got {gear!r}"
             raise scene.refuse(("moves", name, "meshes", central), words)
-        if central in planet.gears or scene.parts[central].kind not in ("spur_gear", "internal_gear"):
-            words = f"expected a spur gear or an internal gear outside the planet, got {central!r}"
+        if central in planet.gears or scene.parts[central].kind not in CENTRALS:
+            words = f"expected a spur, helical or internal gear outside the planet, got {central!r}"
             raise scene.refuse(("moves", name, "meshes", central), words)
     for gear in planet.gears:
         if gear not in spec.meshes.values():
@@ -97,6 +102,8 @@ def _refuse_unlike(scene: Scene, name: str, central: SetGear, set_gear: SetGear)
     if (found := unlike(scene, central.name, set_gear.name)) is not None:
         words = "expected gears of the same {}, got {} and {}".format(*found)
         raise scene.refuse(("moves", name, "meshes", central.name), words)
+    if crossed := crossed_axes(*(cylindrical_gear(scene, gear.name) for gear in (central, set_gear))):
+        raise scene.refuse(("moves", name, "meshes", central.name), crossed)
 
 
 def _springs(scene: Scene, spec: PlanetarySpec) -> tuple[Spring, ...]:

@@ -37,11 +37,18 @@ def contact_ratios(mesh: SetMesh) -> tuple[float, float]:
 
 
 def mesh_efficiencies(planetary_set: PlanetarySet, friction: float, sharing: Sharing) -> Mapping[str, float]:
-    """1 - mu pi (1/z_p + s/z) E of each mesh, by its central gear; see model.efficiency."""
+    """1 - mu pi (1/z_p + s/z) E/cos beta_b of each mesh, by its central gear; see model.efficiency.
+
+    Teeth slide in the transverse section; their normal force leans out of it (Niemann and Winter, Machine Elements II).
+    """
     factor = sliding_factor if sharing == "formula" else shared_sliding_factor
     return {
         mesh.central.name: 1
-        - friction * math.pi * (1 / mesh.planet.teeth + mesh.sense / mesh.central.teeth) * factor(*contact_ratios(mesh))
+        - friction
+        * math.pi
+        * (1 / mesh.planet.teeth + mesh.sense / mesh.central.teeth)
+        * factor(*contact_ratios(mesh))
+        / mesh.central.base_helix_cosine
         for mesh in planetary_set.meshes
     }
 

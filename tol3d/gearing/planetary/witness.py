@@ -64,7 +64,8 @@ class StripGaps:
     def gaps(self, gears: Sequence[PlacedGear]) -> Array:
         """(planets, meshes, 2) [mm]: before the right and the left flank of the planet's teeth.
 
-        Where flanks overlap by more than the slack of both it is that slack, negative.
+        Where flanks overlap by more than the slack of both it is that slack, negative. They are lengths along the line
+        of action: the normals of helical gears, along which strips are apart, lean out of it and are shorter.
 
         Args:
             gears: central gears, then those of each planet, as ShownSet has them.
@@ -76,7 +77,8 @@ class StripGaps:
                 planet = gears[len(own.meshes) + k * steps + own.gear_of(mesh)]
                 names = mesh.central.name, mesh.planet.name
                 for side, flank in enumerate((RIGHT, LEFT)):
-                    found[k, m, side] = self._gap(names, gears[m], planet, flank)
+                    normal = self._gap(names, gears[m], planet, flank)
+                    found[k, m, side] = normal / mesh.central.base_helix_cosine
         return found
 
     def _gap(self, names: tuple[str, str], central: PlacedGear, planet: PlacedGear, flank: Flank) -> float:
@@ -246,7 +248,11 @@ def witness(system: SetTrials, made: Made, strips: Mapping[str, FlankStrips]) ->
     """The method of a set's trials by FCL, from the strips of every gear by name."""
     turning, overcome = (StripContact(own, made, StripGaps(own, strips)) for own in (system.own, system.overcome))
     meshes = system.own.meshes
-    chords = [strips[mesh.central.name].chord_error + strips[mesh.planet.name].chord_error for mesh in meshes]
-    others = [ALLOWANCE * mesh.central.module for mesh in meshes]
+    leaning = [mesh.central.base_helix_cosine for mesh in meshes]
+    chords = [
+        (strips[mesh.central.name].chord_error + strips[mesh.planet.name].chord_error) / cosine
+        for mesh, cosine in zip(meshes, leaning, strict=True)
+    ]
+    others = [ALLOWANCE * mesh.central.module / cosine for mesh, cosine in zip(meshes, leaning, strict=True)]
     largest = max(strip.chord_error for strip in strips.values())
     return PlanetaryWitness(system, turning, overcome, chord_error=largest, errors=(chords, others))

@@ -288,12 +288,12 @@ def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
     first_order = math.inf
     for step in range(count):
         tooth = sigma * middle_first(step, first, count, in_middle)
+        order = math.inf
         if one_base_pitch and leaning(own, side) != 0.0:
             start = start_on(build, pose, sigma, azimuths(build, at, sigma, tooth)[0])
             order, leeway = promise(own, build.driven, pose, side, start, abs(gap) if gap < math.inf else 0.0)
             if order > first_order + leeway:
                 continue
-            first_order = min(first_order, order)
         near = pair_nearest(build, at, sigma, tooth, pose, own, face, look.per_turn, QUICK_FALL)
         if near.gap == math.inf:
             continue
@@ -304,6 +304,7 @@ def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
         if near.how == BEYOND:
             doubtful = min(doubtful, near.gap)
             continue
+        first_order = min(first_order, order)
         its_turn = near.turn
         if eccentricity > 0.0:
             arm = abs(near.ny * near.x - near.nx * near.y)

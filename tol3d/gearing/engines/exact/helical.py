@@ -193,8 +193,8 @@ def first_end(own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigm
     if tangent == 0.0:
         return face
     if rate > 0.0:
-        return max(own.low, mate.low - pose.z)
-    return min(own.high, mate.high - pose.z)
+        return float(max(own.low, mate.low - pose.z))
+    return float(min(own.high, mate.high - pose.z))
 
 
 @variant(first_face, HelicalTooth)

@@ -111,7 +111,7 @@ class Contact:
         directions = np.stack([np.cos(own.azimuths), np.sin(own.azimuths)], axis=-1)
         places = np.array([own.gear_of(mesh) for mesh in own.meshes])
         room = np.array([mesh.clearance for mesh in own.meshes]) + np.zeros((len(turns), own.planets, len(places)))
-        cosines = np.array([math.cos(mesh.central.pressure_angle) for mesh in own.meshes])
+        cosines = np.array([mesh.central.along_action for mesh in own.meshes])
         thicker = deviated.central_thickness[:, None] + deviated.planet_thickness[:, places].swapaxes(1, 2)
         meshes = self._meshes
         middle = meshes[:, 1] * deviated.planet_clocking[:, places].swapaxes(1, 2)

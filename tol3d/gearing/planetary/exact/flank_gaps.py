@@ -2,7 +2,8 @@
 
 Both involutes of a contact are normal to one line that is tangent to both base circles, so that their distance is
 measured along it: the unwound length of each, by the azimuth at which it begins on its base circle. Flanks of
-all teeth lie a base pitch apart, alike for both gears; the pair nearest to the pitch point is taken.
+all teeth lie a base pitch apart, alike for both gears; the pair nearest to the pitch point is taken. Of helical gears
+this is the section in the middle of the faces, and the normals lean out of it by the base helix angle.
 """
 
 import math
@@ -55,6 +56,7 @@ def flank_gaps(planetary_set: PlanetarySet, gears: Sequence[PlacedGear]) -> Iter
 
 def _gap(central: PlacedGear, planet: PlacedGear, flank: Flank) -> tuple[float, Array]:
     """Distance [mm] and the point on the planet's flank."""
+    assert isinstance(planet.gear, SpurGear)
     ring = isinstance(central.gear, InternalGear)
     side = 1.0 if flank == LEFT else -1.0  # the way out of the planet's tooth, about its axis
     r_c, r_p = central.gear.base_radius, planet.gear.base_radius
@@ -78,7 +80,7 @@ def _gap(central: PlacedGear, planet: PlacedGear, flank: Flank) -> tuple[float, 
     pitch_point = r_p * math.tan(working)
     own -= pitch * round((own - pitch_point) / pitch)
     its -= pitch * round((its - own) / pitch)
-    return its - own, np.array([*(begin + own * along), height])
+    return (its - own) * planet.gear.base_helix_cosine, np.array([*(begin + own * along), height])
 
 
 def _turn(gear: PlacedGear) -> float:

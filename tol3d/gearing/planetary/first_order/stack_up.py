@@ -1,9 +1,10 @@
 """The analytic method: travel of each flank of each mesh, to first order in the deviations, and the free turns.
 
 Along the line of action, with alpha_w the working pressure angle and s = 1 of a sun, -1 of a ring: a tooth thicker by
-an arc E takes E cos(alpha)/2 from each flank; a planet displaced against its central gear by d_r outwards and d_t
-counter-clockwise opens the flanks by s (sin(alpha_w) d_r +- cos(alpha_w) d_t); a gear turned on its shaft by a moves
-them by r_b a. Working radii alone decide the rest: see PlanetarySet.all_rows. Nothing here sees a pose.
+an arc E takes E cos(alpha)/2 from each flank, of helical gears E cos(alpha_t)/(2 cos(beta)); a planet displaced against
+its central gear by d_r outwards and d_t counter-clockwise opens the flanks by s (sin(alpha_w) d_r +- cos(alpha_w) d_t);
+a gear turned on its shaft by a moves them by r_b a. Working radii alone decide the rest: see PlanetarySet.all_rows.
+Nothing here sees a pose.
 
 Bound on the change of a shaft's play for a small error of every gap.
 
@@ -49,7 +50,7 @@ class StackUp:
             aside = turned(deviated.aside[:, None, place].repeat(own.planets, axis=1), -azimuths)
             apart = planet + deviated.pins - central + aside
             thicker = deviated.central_thickness[:, place, None] + deviated.planet_thickness[:, gear]
-            room = mesh.clearance - thicker * np.cos(mesh.central.pressure_angle) / 2
+            room = mesh.clearance - thicker * mesh.central.along_action / 2
             room = room + s * np.sin(angle) * apart[..., 0]
             moved = s * np.cos(angle) * apart[..., 1]
             moved = moved - mesh.planet.base_radius * deviated.planet_clocking[:, gear]
@@ -163,7 +164,7 @@ class StackUp:
         found.central_offset[...], found.planet_offset[...] = on_central, on_planet
         for place, mesh in enumerate(own.meshes):
             gear, s, angle = own.gear_of(mesh), mesh.sense, mesh.working_pressure_angle
-            thicker = -np.cos(mesh.central.pressure_angle) / 2 * opened[:, :, place]
+            thicker = -mesh.central.along_action / 2 * opened[:, :, place]
             found.central_thickness[:, place] += thicker.sum(axis=1)
             found.planet_thickness[:, gear] += thicker
             pushed = np.stack([np.sin(angle) * opened[:, :, place], np.cos(angle) * moved[:, :, place]], axis=-1) * s

@@ -5,18 +5,20 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
+from tol3d.gearing.grammar.moves import HelicalMoveSpec
 from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.gearing.planetary.grammar.parts import CarrierSpec, PlanetSpec
-from tol3d.scene.bases import Length, MoveSpec
+from tol3d.scene.bases import Length
 from tol3d.scene.entry import Reference
 from tol3d.scene.name import Name
 
 
-class PlanetarySpec(MoveSpec):
+class PlanetarySpec(HelicalMoveSpec):
     """Planets, evenly spaced on their carrier, each in mesh with every central gear: sun gears and rings.
 
     One shaft is held, one drives, one is driven; the others turn freely. So simple sets, compound ones, and those with
-    two rings (3K, Wolfrom) differ by what they name.
+    two rings (3K, Wolfrom) differ by what they name. Of helical gears planets and rings that mesh have one hand, a sun
+    has the other.
     """
 
     words: ClassVar[str] = "a planetary set"

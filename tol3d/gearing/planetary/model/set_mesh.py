@@ -1,4 +1,8 @@
-"""The gears of a planetary set and their meshes, as they are meant."""
+"""The gears of a planetary set and their meshes, as they are meant.
+
+Axes are parallel, so that every transverse section of helical gears is a spur set, turned: gaps here are lengths along
+the line of action in that section, of which the normals of the flanks have cos(beta_b).
+"""
 
 import math
 from dataclasses import dataclass
@@ -16,11 +20,12 @@ class SetGear:
     """A gear of a set; of a ring the radii are positive and the tooth points inwards.
 
     Args:
-        module: [mm].
-        pressure_angle: at the reference circle [rad].
+        module: [mm], of a helical gear that of the normal section.
+        pressure_angle: at the reference circle [rad], of a helical gear in the normal section.
         profile_shift: in modules; positive is a thicker tooth, of rings too.
         addendum: in modules.
         is_ring: whether it is an internal gear.
+        helix_angle: at the reference cylinder [rad].
     """
 
     name: str
@@ -30,17 +35,36 @@ class SetGear:
     profile_shift: float = 0.0
     addendum: float = 1.0
     is_ring: bool = False
+    helix_angle: float = 0.0
+
+    @cached_property
+    def transverse_pressure_angle(self) -> float:
+        """alpha_t [rad], tan alpha_t = tan alpha_n/cos beta."""
+        if self.helix_angle == 0.0:
+            return self.pressure_angle
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+
+    @property
+    def base_helix_cosine(self) -> float:
+        """cos beta_b, sin beta_b = sin beta cos alpha_n; 1 of spur gears."""
+        return math.sqrt(1.0 - (math.sin(self.helix_angle) * math.cos(self.pressure_angle)) ** 2)
+
+    @property
+    def along_action(self) -> float:
+        """cos alpha_t/cos beta: along the line of action of an arc of the tooth thickness, in the normal section."""
+        return math.cos(self.transverse_pressure_angle) / math.cos(self.helix_angle)
 
     @property
     def base_radius(self) -> float:
         """r_b [mm]."""
-        return self.module * self.teeth * math.cos(self.pressure_angle) / 2
+        return self.module * self.teeth * math.cos(self.transverse_pressure_angle) / 2 / math.cos(self.helix_angle)
 
     @property
     def tip_radius(self) -> float:
         """r_a [mm]."""
         outwards = -1.0 if self.is_ring else 1.0
-        return self.module * (self.teeth / 2 + outwards * (self.addendum + self.profile_shift))
+        radius = self.teeth / 2 / math.cos(self.helix_angle)
+        return self.module * (radius + outwards * (self.addendum + self.profile_shift))
 
 
 @dataclass(frozen=True)
@@ -84,21 +108,26 @@ class SetMesh:
 
     @cached_property
     def working_pressure_angle(self) -> float:
-        """alpha_w with cos alpha_w = base radii / a [rad]; ISO 21771-1:2024, 5.3."""
+        """alpha_wt with cos alpha_wt = base radii / a [rad], in the transverse section; ISO 21771-1:2024, 5.3."""
         return math.acos(self.base_radii / self.centre_distance)
 
     @property
     def clearance(self) -> float:
-        """Half the nominal normal backlash: gap of each flank of a tooth in the middle of its space [mm].
+        """Gap of each flank of a tooth in the middle of its space, along the line of action [mm].
 
-        j/2 = s (r_bC + s r_bP)(inv alpha_w - inv alpha_0) with s = 1 of a sun, -1 of a ring, and tooth + tooth = pitch
-        at alpha_0: inv alpha_0 = inv alpha + 2 s tan alpha (x_C + x_P)/(z_C + s z_P).
+        j/2 = s (r_bC + s r_bP)(inv alpha_wt - inv alpha_0) with s = 1 of a sun, -1 of a ring, and tooth + tooth = pitch
+        at alpha_0: inv alpha_0 = inv alpha_t + 2 s tan alpha_n (x_C + x_P)/(z_C + s z_P).
         """
         alpha = self.central.pressure_angle
         shifts = self.central.profile_shift + self.planet.profile_shift
         teeth = self.central.teeth + self.sense * self.planet.teeth
-        tight = involute(alpha) + self.sense * 2 * math.tan(alpha) * shifts / teeth
+        tight = involute(self.central.transverse_pressure_angle) + self.sense * 2 * math.tan(alpha) * shifts / teeth
         return self.sense * self.base_radii * (involute(self.working_pressure_angle) - tight)
+
+    @property
+    def normal_backlash(self) -> float:
+        """Nominal j_bn [mm]."""
+        return 2 * self.clearance * self.central.base_helix_cosine
 
     @property
     def tight_centre_distance(self) -> float:

@@ -50,7 +50,7 @@ class MeshRow(RowOf[SetMesh]):
     teeth = Computed(Shows("teeth", "d"), lambda own: own.of.central.teeth)
     planet_teeth = Computed(Shows("of the planet", "d"), lambda own: own.of.planet.teeth)
     angle = Computed(Shows("working pressure angle", ".4f", "°"), lambda own: own.of.working_pressure_angle)
-    backlash = Computed(Shows("normal backlash", ".3f", "µm"), lambda own: 2 * own.of.clearance)
+    backlash = Computed(Shows("normal backlash", ".3f", "µm"), lambda own: own.of.normal_backlash)
     tight_at = Computed(Shows("tight at a", ".4f", "mm"), lambda own: own.of.tight_centre_distance)
 
 
