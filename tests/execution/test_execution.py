@@ -18,7 +18,7 @@ from places import SPUR_PAIR
 from tol3d import Overrides, RunError, run_scene
 from tol3d.gearing.model import Model
 from tol3d.statistics.estimates import Moments
-from tol3d.study.execution.folding import Columns, Plan, run_blocks
+from tol3d.study.execution.folding import Columns, Plan, Progress, run_blocks
 from tol3d.study.execution.pools import CALLS_A_SLOT, Concurrency, Execution, InThisProcess, Ready, in_order, pool_of
 from tol3d.study.results import task as block_module
 from tol3d.study.results.task import Task
@@ -40,7 +40,7 @@ class Draws:
     def statistics(self, first: int, columns: Columns) -> Moments:
         return Moments.of(np.asarray(columns["value"], dtype=np.float64))
 
-    def block(self, first: int, count: int) -> tuple[Columns, Moments]:
+    def block(self, first: int, count: int, progress: Progress = lambda done: None) -> tuple[Columns, Moments]:
         columns = self.columns(first, count)
         return columns, self.statistics(first, columns)
 

@@ -16,10 +16,10 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.analyses.pace import FIRST_PIECE, Pace
 from tol3d.analyses.response import Response
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
+from tol3d.study.execution.pace import FIRST_PIECE, Pace
 from tol3d.study.trials.draws import KeptDraws
 
 CHECKED: Final = 200

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.kept_batches import KeptBatches
-from tol3d.analyses.pace import Pace
 from tol3d.analyses.scope import Scope, scope_of
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
@@ -23,6 +22,7 @@ from tol3d.statistics.distributions import Distribution
 from tol3d.statistics.distributions.base import Stays
 from tol3d.study.effects.acting_contributors import acting, nothing_acts
 from tol3d.study.effects.high_low_mean import ranges
+from tol3d.study.execution.pace import Pace
 from tol3d.study.results.task import materials_of, method_of
 from tol3d.study.runs.frame import frame_of
 from tol3d.study.system.contributor import Contributor

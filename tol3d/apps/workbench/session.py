@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.moved_values import MovedValues
-from tol3d.analyses.pace import FEWEST, LONGEST, Pace
 from tol3d.analyses.response import Response, Values, response_of
 from tol3d.analyses.results import pilots_of, results_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
@@ -32,6 +31,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.simulate import load, simulation_of
 from tol3d.study import Simulation
+from tol3d.study.execution.pace import FEWEST, LONGEST, Pace
 from tol3d.study.runs.summary.judged import Accepted, JudgedMeasure, demand_of
 from tol3d.study.runs.summary.sample import Sample
 from tol3d.study.system.measure import Measure

@@ -5,10 +5,11 @@ blocks are cut alike whoever runs them, and their statistics are folded in the o
 with the number of trials.
 """
 
+import threading
 import time
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Generic, Protocol, Self, TypeVar
 
 import numpy as np
@@ -20,6 +21,7 @@ Columns = dict[str, NDArray[np.generic]]
 Progress = Callable[[int], None]
 
 TASK_CONTACTS = 256  # contacts handed out at once: 0.1 s of them, so progress moves and workers end together
+TOLD_EVERY = 1.0  # s; a block that takes longer tells how far it is
 KEEP_EVERY = 5.0  # s; an interrupted run loses no more than what this long has made
 KEPT_WITHIN = 0.25  # s; statistics that take longer to keep are kept as much more seldom
 
@@ -52,8 +54,8 @@ class Work(Protocol[S_co]):
         """Statistics of a block of columns that begins at trial `first`."""
         ...
 
-    def block(self, first: int, count: int) -> tuple[Columns | None, S_co]:
-        """Columns of a block, if they are kept, and its statistics."""
+    def block(self, first: int, count: int, progress: Progress) -> tuple[Columns | None, S_co]:
+        """Columns of a block, if they are kept, and its statistics; `progress` gets the trials since its last call."""
         ...
 
 
@@ -243,36 +245,63 @@ class _Parts(Generic[S]):
 # whole blocks -------------------------------------------------------------------------------------
 
 
+@dataclass
+class _Told:
+    """Progress inside a block, passed on where a block takes long.
+
+    Args:
+        progress: which is told.
+        trials: told of this block.
+    """
+
+    progress: Progress
+    trials: int = 0
+    _made: int = 0
+    _at: float = field(default_factory=time.monotonic)
+
+    def __call__(self, done: int) -> None:
+        self._made += done
+        if time.monotonic() - self._at > TOLD_EVERY:
+            self.progress(self._made - self.trials)
+            self.trials, self._at = self._made, time.monotonic()
+
+
 def _whole_blocks(parts: _Parts[S]) -> Generator[_Done[S], None, None]:
     """Blocks in order, each made by one call; a worker that shares our memory writes it too."""
-    for block, (found, columns, statistics) in in_order(parts.pool, _block_calls(parts)):
+    one_at_a_time = threading.Lock()
+
+    def progress(done: int) -> None:
+        with one_at_a_time:
+            parts.on_progress(done)
+
+    for block, (found, columns, statistics, told) in in_order(parts.pool, _block_calls(parts, progress)):
         if columns is not None:
             parts.store.write(block.index, columns)
-        parts.on_progress(block.count)
+        progress(block.count - told)
         yield found or parts.done(block, statistics, 0)
 
 
-def _block_calls(parts: _Parts[S]) -> Iterator[tuple[Block, Pending[Any]]]:
+def _block_calls(parts: _Parts[S], progress: Progress) -> Iterator[tuple[Block, Pending[Any]]]:
     for block in parts.plan.blocks():
         found = parts.found(block)
         if found is not None:
-            yield block, Ready((found, None, None))
+            yield block, Ready((found, None, None, 0))
         elif parts.pool.shares_memory:
-            yield block, parts.pool.submit(_made_and_written, parts.work, block, parts.store)
+            yield block, parts.pool.submit(_made_and_written, parts.work, block, parts.store, _Told(progress))
         else:
             yield block, parts.pool.submit(_made, parts.work, block)
 
 
-def _made(work: Work[S], block: Block) -> tuple[None, Columns | None, S]:
-    columns, statistics = work.block(block.first, block.count)
-    return None, columns, statistics
+def _made(work: Work[S], block: Block) -> tuple[None, Columns | None, S, int]:
+    columns, statistics = work.block(block.first, block.count, lambda done: None)
+    return None, columns, statistics, 0
 
 
-def _made_and_written(work: Work[S], block: Block, store: BlockStore) -> tuple[None, None, S]:
-    columns, statistics = work.block(block.first, block.count)
+def _made_and_written(work: Work[S], block: Block, store: BlockStore, told: _Told) -> tuple[None, None, S, int]:
+    columns, statistics = work.block(block.first, block.count, told)
     if columns is not None:
         store.write(block.index, columns)
-    return None, None, statistics
+    return None, None, statistics, told.trials
 
 
 # pieces of blocks ---------------------------------------------------------------------------------
@@ -305,12 +334,12 @@ def _in_pieces(parts: _Parts[S]) -> Generator[_Done[S], None, None]:
             fresh.append(columns)
         block = piece.block
         if piece.first + piece.count == block.end:
-            whole = _joined([*pieces, *fresh])
+            whole = joined_columns([*pieces, *fresh])
             parts.store.write(block.index, whole)
             yield parts.done(block, parts.work.statistics(block.first, whole), resumed)
             pieces, fresh, resumed, kept_at = [], [], 0, time.monotonic()
         elif time.monotonic() - kept_at > KEEP_EVERY and fresh:
-            pieces.append(_joined(fresh))
+            pieces.append(joined_columns(fresh))
             parts.store.write_piece(block.index, piece.first + piece.count - _length(pieces[-1]), pieces[-1])
             fresh, kept_at = [], time.monotonic()
 
@@ -335,5 +364,8 @@ def _length(columns: Columns) -> int:
     return len(next(iter(columns.values())))
 
 
-def _joined(pieces: list[Columns]) -> Columns:
+def joined_columns(pieces: Sequence[Columns]) -> Columns:
+    """Columns of pieces that follow each other, as one."""
+    if len(pieces) == 1:
+        return pieces[0]
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}

@@ -6,16 +6,18 @@ line has unless it states their number; `run_scene` has one.
 
 import math
 import threading
+import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from dataclasses import dataclass, field, replace
+from functools import lru_cache, partial
 from typing import Any, Final
 
 from numpy.typing import NDArray
 
 from tol3d.statistics.estimates import Grid
 from tol3d.study.effects.acting_contributors import looked_at
-from tol3d.study.execution.folding import Plan
+from tol3d.study.execution.folding import Plan, Progress, joined_columns
+from tol3d.study.execution.pace import Pace
 from tol3d.study.execution.pools import Concurrency, suggested_workers
 from tol3d.study.results.versions import Versions, installed_versions, refuse_other_versions
 from tol3d.study.system.faults import faults_of
@@ -27,6 +29,12 @@ from tol3d.study.trials.draws import drawn
 from tol3d.study.trials.simulation import Simulation
 
 Columns = dict[str, NDArray[Any]]
+
+PIECE_S: Final = 2.0
+"""Seconds of a piece of a block, about: after each one progress may be told."""
+TOGETHER: Final = 64
+"""Pieces have a multiple of so many trials. A trial sees no other, but numpy computes complex numbers at an array's
+end, past the last full vector of the processor, to another last bit: so the same trials stand there as in the whole."""
 
 
 def materials_of(simulation: Simulation) -> Any:
@@ -73,6 +81,7 @@ class Task:
         fingerprint: one a study.
         keep_trials: whether the columns of a whole block are wanted, or its statistics only.
         versions: of the packages that decide the last bit, as installed_versions has it.
+        pace: of the pieces of blocks.
     """
 
     simulation: Simulation
@@ -81,6 +90,7 @@ class Task:
     fingerprint: str
     keep_trials: bool
     versions: Versions
+    pace: Pace = field(default_factory=partial(Pace, piece=PIECE_S))
 
     @property
     def concurrency(self) -> Concurrency:
@@ -116,9 +126,17 @@ class Task:
         """See folding.Work."""
         return Tally.of(self.simulation, self.grids, columns, first)
 
-    def block(self, first: int, count: int) -> tuple[Columns | None, Tally]:
-        """See folding.Work."""
-        columns = self.columns(first, count)
+    def block(self, first: int, count: int, progress: Progress) -> tuple[Columns | None, Tally]:
+        """See folding.Work; in pieces of about PIECE_S, whose bits are those of the whole."""
+        pieces, at = list[Columns](), first
+        while at < first + count:
+            trials, begun = max(self.pace.count // TOGETHER, 1) * TOGETHER, time.perf_counter()
+            trials = min(trials, first + count - at)
+            pieces.append(self.columns(at, trials))
+            self.pace.took(trials, time.perf_counter() - begun)
+            progress(trials)
+            at += trials
+        columns = joined_columns(pieces)
         return columns if self.keep_trials else None, self.statistics(first, columns)
 
     def __hash__(self) -> int:

@@ -9,7 +9,7 @@ FIRST_PIECE: Final = 64
 FEWEST: Final = 8
 """Builds of the first piece of dear ones: of some as much again does not grow with builds, and guesses are high."""
 PIECE: Final = 0.1
-"""Seconds to which pieces grow."""
+"""Seconds to which pieces grow by default."""
 MOST_GROWTH: Final = 16.0
 FIXED_IN: Final = 10.0
 """Seconds of a piece over those of it that do not grow with builds, up to `LONGEST`."""
@@ -26,10 +26,12 @@ class Pace:
     Args:
         count: of the next piece.
         measured: the least seconds of the last two sizes.
+        piece: seconds to which pieces grow.
     """
 
     count: int = FIRST_PIECE
     measured: Mapping[int, float] = field(default_factory=dict)
+    piece: float = PIECE
 
     @classmethod
     def of(cls, seconds: float) -> "Pace":
@@ -44,11 +46,12 @@ class Pace:
         others = [(count, its) for count, its in self.measured.items() if count != builds][-1:]
         self.measured = dict([*others, (builds, seconds)])
         if not others:
-            longer = min(PIECE / seconds, MOST_GROWTH) if seconds < PIECE else 2.0 if seconds < 2.5 * PIECE else 0.5
+            longer = 2.0 if seconds < 2.5 * self.piece else 0.5
+            longer = min(self.piece / seconds, MOST_GROWTH) if seconds < self.piece else longer
             self.count = max(int(builds * longer), 1)
             return
         ((count, its),) = others
         each = max((seconds - its) / (builds - count), 1e-9)
         fixed = max(seconds - each * builds, 0.0)
-        wanted = max(PIECE, min(FIXED_IN * fixed, LONGEST), 2.0 * fixed)
+        wanted = max(self.piece, min(FIXED_IN * fixed, LONGEST), 2.0 * fixed)
         self.count = max(round(min((wanted - fixed) / each, MOST_GROWTH * builds)), 1)
