@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from math import cos, pi, radians, tan
+from math import acos, cos, pi, radians, sin, tan
 from pathlib import Path
 from typing import Any
 
@@ -315,19 +315,59 @@ def test_profile_shifts_that_the_file_does_not_say_are_those_without_backlash() 
     assert stage.normal_backlash == pytest.approx(0.0, abs=2e-6)
 
 
-def test_rounded_profile_shifts_that_interfere_are_drafted_without_backlash() -> None:
-    """60.67259 mm leaves -0.004 µm; a scene with that would be refused."""
+def with_shift(rexs: Rexs, shift: object) -> Rexs:
+    """A pair without limits of its teeth and its distance, whose pinion has another profile shift."""
     series = "tooth_thickness_deviation_tolerance_series_din_3967_1978"
-    rexs = pair().having(11, center_distance=(60.67259, "mm"), center_distance_tolerance_field_din_3964_1980=None)
-    rexs = rexs.having(5, **{series: None}).having(8, **{series: None})
+    for side in (6, 7):
+        rexs = rexs.having(side, addendum_modification_coefficient=(shift, "none"))
+    return rexs.having(5, **{series: None}).having(8, **{series: None})
+
+
+def test_rounded_profile_shifts_that_interfere_are_drafted_without_backlash() -> None:
+    """x 0.2001 and 0.15(00), 60.6726 mm: each half of a last digit, 2 m sin α and 2 sin α_w per mm, take 0.173 µm."""
+    rexs = with_shift(pair(), 0.2001).having(
+        11, center_distance=(60.6726, "mm"), center_distance_tolerance_field_din_3964_1980=None
+    )
     text, drafted = gearbox_scene_from(rexs.file())
-    assert 1e3 * (drafted.gearbox.stages[0].normal_backlash or 0.0) == pytest.approx(-0.004, abs=5e-4)
+    (stage,) = drafted.gearbox.stages
+    working = acos(60 * cos(radians(20)) / 60.6726)
+    bound = 2 * sin(radians(20)) * 2e-4 + sin(working) * 1e-4
+    assert stage.by_rounding == pytest.approx(bound, abs=2e-7)
+    assert -bound < (stage.normal_backlash or 0.0) < -1e-4
     assert "# gear 8; x 0.15 in the file, rounded: its teeth interfere" in text
-    assert 0.15 - 1e-5 < yaml.safe_load(text)["parts"]["wheel"]["profile_shift"] < 0.15
+    less = 0.15 - yaml.safe_load(text)["parts"]["wheel"]["profile_shift"]
+    assert less == pytest.approx(-(stage.normal_backlash or 0.0) / (4 * sin(radians(20))), abs=2e-9)
     (told,) = (own for own in drafted.notes() if "no backlash" in own)
-    assert told == "cylindrical_stage 11 has no backlash without tolerances: normal backlash -0.004 um."
-    thin = rexs.having(5, **{series: ("h25", "none")})
+    assert told == (
+        "cylindrical_stage 11 has no backlash without tolerances: normal backlash -0.134 um; rounding of the last "
+        "digits of x and center_distance can take 0.17 um: x of gear 8 is less by 9.8e-05 in the scene."
+    )
+    thin = rexs.having(5, tooth_thickness_deviation_tolerance_series_din_3967_1978=("h25", "none"))
     assert "profile_shift: 0.15}" in scene_of(thin)[0]
+
+
+@pytest.mark.parametrize("shift", [0.2003, 0.21, 0.25])
+def test_teeth_that_rounding_does_not_explain_are_not_changed(shift: float) -> None:
+    """0.2003 takes 0.4 µm; 0.21 and 0.15 have too few decimals to be rounded."""
+    rexs = with_shift(pair(), shift).having(11, center_distance=(60.6726, "mm"))
+    told = refusal(rexs.having(11, center_distance_tolerance_field_din_3964_1980=None))
+    assert re.search(
+        r"; cylindrical_stage 11: normal backlash -\d+\.\d+ um, rounding of the last digits of x and ", told
+    )
+
+
+@pytest.mark.parametrize(
+    ("module", "shift", "by"),
+    [
+        (9.0, 0.2001, 9 * sin(radians(20)) * 2e-4),  # 0.6 um
+        (2.0, "0.20010", 2 * sin(radians(20)) * 2e-5),
+        (2.0, 0.25, 0.0),
+        (2.0, "2e-1", 0.0),
+    ],
+)
+def test_rounding_takes_what_the_last_digits_can(module: float, shift: object, by: float) -> None:
+    (stage,) = gearbox(with_shift(pair(module=module), shift).having(11, center_distance=(300, "mm"))).stages
+    assert stage.by_rounding == pytest.approx(by, abs=2e-7)
 
 
 def test_helical_stages_are_read_with_their_backlash() -> None:
@@ -355,7 +395,8 @@ def test_helical_gears_are_drafted_with_their_meshes_alone() -> None:
     assert told[0] == "Tolerances from box.rexs: none, all builds are nominal."
     assert [own for own in told if "has no backlash without tolerances" in own] == [
         "cylindrical_stage 18 has no backlash without tolerances: normal backlash 0.001 um.",
-        "cylindrical_stage 19 has no backlash without tolerances: normal backlash -0.004 um.",
+        "cylindrical_stage 19 has no backlash without tolerances: normal backlash -0.004 um; rounding of the last digits "
+        "of x and center_distance can take 0.045 um: x of gear 15 is less by 9.1e-07 in the scene.",
     ]
     assert read["moves"]["slow"]["azimuth"] == "180 deg"  # back to the first axis
 
