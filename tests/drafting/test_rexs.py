@@ -395,8 +395,8 @@ def test_helical_gears_are_drafted_with_their_meshes_alone() -> None:
     assert told[0] == "Tolerances from box.rexs: none, all builds are nominal."
     assert [own for own in told if "has no backlash without tolerances" in own] == [
         "cylindrical_stage 18 has no backlash without tolerances: normal backlash 0.001 um.",
-        "cylindrical_stage 19 has no backlash without tolerances: normal backlash -0.004 um; rounding of the last digits "
-        "of x and center_distance can take 0.045 um: x of gear 15 is less by 9.1e-07 in the scene.",
+        "cylindrical_stage 19 has no backlash without tolerances: normal backlash -0.004 um; rounding of the last "
+        "digits of x and center_distance can take 0.045 um: x of gear 15 is less by 9.1e-07 in the scene.",
     ]
     assert read["moves"]["slow"]["azimuth"] == "180 deg"  # back to the first axis
 
