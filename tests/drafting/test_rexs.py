@@ -1,6 +1,8 @@
 """REXS files: the drafted scene has the numbers of the gear program, and asks for what that does not say."""
 
+import builtins
 import re
+import socket
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import acos, cos, pi, radians, sin, tan
@@ -11,6 +13,7 @@ import numpy as np
 import pytest
 import yaml
 from fixtures import Command
+from places import SCENES
 from rexs_texts import Attributes, Rexs, Writer, pair, planetary, two_stages, zipped
 from scipy.optimize import brentq
 
@@ -126,7 +129,7 @@ def test_the_lines_to_fill_in_are_scenes_as_they_stand() -> None:
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("version", ["1.0", "1.2", "1.7", "2.0.0"])
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "2.0.0"])
 @pytest.mark.parametrize("name", ["box.rexs", "box.rexsj", "box.rexsz"])
 def test_every_form_and_version_of_a_gearbox_gives_one_scene(version: str, name: str) -> None:
     wanted = gearbox_draft(pair("1.7").file()).scene()[0]
@@ -146,6 +149,61 @@ def test_every_form_and_version_of_a_gearbox_gives_one_scene(version: str, name:
     text = gearbox_draft(rexs.file(name)).scene()[0]
     assert "c25" in wanted
     assert text.replace(name, "box.rexs") == wanted
+
+
+@pytest.mark.parametrize("name", ["box.rexsj", "box.rexsz", "box.rexs.zip"])
+def test_every_form_of_a_planetary_stage_gives_one_scene(name: str) -> None:
+    wanted = gearbox_draft(planetary().file()).scene()[0]
+    assert gearbox_draft(planetary().file(name)).scene()[0].replace(name, "box.rexs") == wanted
+
+
+def test_nothing_is_fetched_and_no_file_that_is_named_is_opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither by names in the file nor by entities, which are refused."""
+    path = tmp_path / "box.rexs"
+    named = pair().having(
+        5, material_file=("http://127.0.0.1:9/steel.xml", "none"), shape=("file:///etc/passwd", "none")
+    )
+    path.write_bytes(named.xml())
+    content = read_file(path)
+
+    def refuse(*words: object, **more: object) -> object:
+        raise AssertionError(f"opened {words}")
+
+    monkeypatch.setattr(socket, "socket", refuse)
+    monkeypatch.setattr(socket, "create_connection", refuse)
+    monkeypatch.setattr(builtins, "open", refuse)
+    monkeypatch.setattr(Path, "open", refuse)
+    assert gearbox_draft(content).scene()[0] == gearbox_draft(pair().file()).scene()[0]
+    for declared in (
+        b'<!DOCTYPE m SYSTEM "http://127.0.0.1:9/a.dtd"><model',
+        b'<!DOCTYPE m [<!ENTITY x SYSTEM "file:///etc/passwd">]><model',
+        b'<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><model',
+    ):
+        told = refusal(FileContent(path, pair().xml().replace(b"<model", declared, 1)))
+        assert "expected no DOCTYPE and no entities; nothing is fetched" in told
+
+
+def test_a_diameter_beyond_the_tables_leaves_a_series_out_by_name() -> None:
+    """z 23 and m 500 mm have d 11.5 m; the tables end at 10 m."""
+    big = {"normal_module": (500.0, "mm"), "face_width": (100.0, "mm")}
+    rexs = pair().having(11, center_distance=(15_200.0, "mm"), center_distance_tolerance_field_din_3964_1980=None)
+    drafted = gearbox_scene_from(rexs.having(5, **big).having(8, **big).file())[1]
+    told = [own for own in drafted.notes() if "reference diameter" in own]
+    assert len(told) == 2
+    assert told[0].startswith("left out: cylindrical_gear 5: tooth thickness: ")
+    assert "expected a reference diameter of at most 10000 mm, got 11500 mm" in told[0]
+
+
+def test_the_bundled_planetary_stage_has_the_limits_of_its_page() -> None:
+    """8′09.2″ and 11′54.0″ with c25 at the ring, which the file does not state."""
+    text, drafted = gearbox_scene_from(read_file(SCENES / "planetary_stage.rexs"))
+    assert "Not in the file, to fill in: ring tooth thickness." in list(drafted.notes())
+    simulation = simulated(filled_in(text))
+    teeth = dict.fromkeys((f"{own} tooth thickness" for own in ("sun", "planet wheel", "ring")), 1)
+    values = [own * 180.0 * 60.0 / pi for own in extremes(simulation, "lost motion", teeth)]
+    assert values == pytest.approx([8 + 9.2 / 60, 11 + 54.0 / 60], abs=1e-3)
 
 
 def test_whole_numbers_may_be_written_as_floats() -> None:
