@@ -112,6 +112,9 @@ PICTURES: Final[Mapping[str, Picture]] = {
         "cycloid_profile.png",
         ("benchmarks/disc_profile.py",),
     ),
+    "gear_engineers.png": Picture(
+        ("yaml:gear_engineers.md:edited.yaml", "tol3d run edited.yaml --out run"), "run/histogram.png", HISTOGRAM
+    ),
     "gearbox.png": viewed("gearbox_in_housing", "--worst"),
     "helical_gearbox.png": viewed("helical_gearbox", "--worst"),
     "records.png": Picture(

@@ -1,9 +1,11 @@
 """REXS files: the drafted scene has the numbers of the gear program, and asks for what that does not say."""
 
+import builtins
 import re
+import socket
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from math import cos, pi, radians, tan
+from math import acos, cos, pi, radians, sin, tan
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,7 @@ import numpy as np
 import pytest
 import yaml
 from fixtures import Command
+from places import SCENES
 from rexs_texts import Attributes, Rexs, Writer, pair, planetary, two_stages, zipped
 from scipy.optimize import brentq
 
@@ -126,7 +129,7 @@ def test_the_lines_to_fill_in_are_scenes_as_they_stand() -> None:
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("version", ["1.0", "1.2", "1.7", "2.0.0"])
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "2.0.0"])
 @pytest.mark.parametrize("name", ["box.rexs", "box.rexsj", "box.rexsz"])
 def test_every_form_and_version_of_a_gearbox_gives_one_scene(version: str, name: str) -> None:
     wanted = gearbox_draft(pair("1.7").file()).scene()[0]
@@ -146,6 +149,61 @@ def test_every_form_and_version_of_a_gearbox_gives_one_scene(version: str, name:
     text = gearbox_draft(rexs.file(name)).scene()[0]
     assert "c25" in wanted
     assert text.replace(name, "box.rexs") == wanted
+
+
+@pytest.mark.parametrize("name", ["box.rexsj", "box.rexsz", "box.rexs.zip"])
+def test_every_form_of_a_planetary_stage_gives_one_scene(name: str) -> None:
+    wanted = gearbox_draft(planetary().file()).scene()[0]
+    assert gearbox_draft(planetary().file(name)).scene()[0].replace(name, "box.rexs") == wanted
+
+
+def test_nothing_is_fetched_and_no_file_that_is_named_is_opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither by names in the file nor by entities, which are refused."""
+    path = tmp_path / "box.rexs"
+    named = pair().having(
+        5, material_file=("http://127.0.0.1:9/steel.xml", "none"), shape=("file:///etc/passwd", "none")
+    )
+    path.write_bytes(named.xml())
+    content = read_file(path)
+
+    def refuse(*words: object, **more: object) -> object:
+        raise AssertionError(f"opened {words}")
+
+    monkeypatch.setattr(socket, "socket", refuse)
+    monkeypatch.setattr(socket, "create_connection", refuse)
+    monkeypatch.setattr(builtins, "open", refuse)
+    monkeypatch.setattr(Path, "open", refuse)
+    assert gearbox_draft(content).scene()[0] == gearbox_draft(pair().file()).scene()[0]
+    for declared in (
+        b'<!DOCTYPE m SYSTEM "http://127.0.0.1:9/a.dtd"><model',
+        b'<!DOCTYPE m [<!ENTITY x SYSTEM "file:///etc/passwd">]><model',
+        b'<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><model',
+    ):
+        told = refusal(FileContent(path, pair().xml().replace(b"<model", declared, 1)))
+        assert "expected no DOCTYPE and no entities; nothing is fetched" in told
+
+
+def test_a_diameter_beyond_the_tables_leaves_a_series_out_by_name() -> None:
+    """z 23 and m 500 mm have d 11.5 m; the tables end at 10 m."""
+    big = {"normal_module": (500.0, "mm"), "face_width": (100.0, "mm")}
+    rexs = pair().having(11, center_distance=(15_200.0, "mm"), center_distance_tolerance_field_din_3964_1980=None)
+    drafted = gearbox_scene_from(rexs.having(5, **big).having(8, **big).file())[1]
+    told = [own for own in drafted.notes() if "reference diameter" in own]
+    assert len(told) == 2
+    assert told[0].startswith("left out: cylindrical_gear 5: tooth thickness: ")
+    assert "expected a reference diameter of at most 10000 mm, got 11500 mm" in told[0]
+
+
+def test_the_bundled_planetary_stage_has_the_limits_of_its_page() -> None:
+    """8′09.2″ and 11′54.0″ with c25 at the ring, which the file does not state."""
+    text, drafted = gearbox_scene_from(read_file(SCENES / "planetary_stage.rexs"))
+    assert "Not in the file, to fill in: ring tooth thickness." in list(drafted.notes())
+    simulation = simulated(filled_in(text))
+    teeth = dict.fromkeys((f"{own} tooth thickness" for own in ("sun", "planet wheel", "ring")), 1)
+    values = [own * 180.0 * 60.0 / pi for own in extremes(simulation, "lost motion", teeth)]
+    assert values == pytest.approx([8 + 9.2 / 60, 11 + 54.0 / 60], abs=1e-3)
 
 
 def test_whole_numbers_may_be_written_as_floats() -> None:
@@ -315,19 +373,59 @@ def test_profile_shifts_that_the_file_does_not_say_are_those_without_backlash() 
     assert stage.normal_backlash == pytest.approx(0.0, abs=2e-6)
 
 
-def test_rounded_profile_shifts_that_interfere_are_drafted_without_backlash() -> None:
-    """60.67259 mm leaves -0.004 µm; a scene with that would be refused."""
+def with_shift(rexs: Rexs, shift: object) -> Rexs:
+    """A pair without limits of its teeth and its distance, whose pinion has another profile shift."""
     series = "tooth_thickness_deviation_tolerance_series_din_3967_1978"
-    rexs = pair().having(11, center_distance=(60.67259, "mm"), center_distance_tolerance_field_din_3964_1980=None)
-    rexs = rexs.having(5, **{series: None}).having(8, **{series: None})
+    for side in (6, 7):
+        rexs = rexs.having(side, addendum_modification_coefficient=(shift, "none"))
+    return rexs.having(5, **{series: None}).having(8, **{series: None})
+
+
+def test_rounded_profile_shifts_that_interfere_are_drafted_without_backlash() -> None:
+    """x 0.2001 and 0.15(00), 60.6726 mm: each half of a last digit, 2 m sin α and 2 sin α_w per mm, take 0.173 µm."""
+    rexs = with_shift(pair(), 0.2001).having(
+        11, center_distance=(60.6726, "mm"), center_distance_tolerance_field_din_3964_1980=None
+    )
     text, drafted = gearbox_scene_from(rexs.file())
-    assert 1e3 * (drafted.gearbox.stages[0].normal_backlash or 0.0) == pytest.approx(-0.004, abs=5e-4)
+    (stage,) = drafted.gearbox.stages
+    working = acos(60 * cos(radians(20)) / 60.6726)
+    bound = 2 * sin(radians(20)) * 2e-4 + sin(working) * 1e-4
+    assert stage.by_rounding == pytest.approx(bound, abs=2e-7)
+    assert -bound < (stage.normal_backlash or 0.0) < -1e-4
     assert "# gear 8; x 0.15 in the file, rounded: its teeth interfere" in text
-    assert 0.15 - 1e-5 < yaml.safe_load(text)["parts"]["wheel"]["profile_shift"] < 0.15
+    less = 0.15 - yaml.safe_load(text)["parts"]["wheel"]["profile_shift"]
+    assert less == pytest.approx(-(stage.normal_backlash or 0.0) / (4 * sin(radians(20))), abs=2e-9)
     (told,) = (own for own in drafted.notes() if "no backlash" in own)
-    assert told == "cylindrical_stage 11 has no backlash without tolerances: normal backlash -0.004 um."
-    thin = rexs.having(5, **{series: ("h25", "none")})
+    assert told == (
+        "cylindrical_stage 11 has no backlash without tolerances: normal backlash -0.134 um; rounding of the last "
+        "digits of x and center_distance can take 0.17 um: x of gear 8 is less by 9.8e-05 in the scene."
+    )
+    thin = rexs.having(5, tooth_thickness_deviation_tolerance_series_din_3967_1978=("h25", "none"))
     assert "profile_shift: 0.15}" in scene_of(thin)[0]
+
+
+@pytest.mark.parametrize("shift", [0.2003, 0.21, 0.25])
+def test_teeth_that_rounding_does_not_explain_are_not_changed(shift: float) -> None:
+    """0.2003 takes 0.4 µm; 0.21 and 0.15 have too few decimals to be rounded."""
+    rexs = with_shift(pair(), shift).having(11, center_distance=(60.6726, "mm"))
+    told = refusal(rexs.having(11, center_distance_tolerance_field_din_3964_1980=None))
+    assert re.search(
+        r"; cylindrical_stage 11: normal backlash -\d+\.\d+ um, rounding of the last digits of x and ", told
+    )
+
+
+@pytest.mark.parametrize(
+    ("module", "shift", "by"),
+    [
+        (9.0, 0.2001, 9 * sin(radians(20)) * 2e-4),  # 0.6 um
+        (2.0, "0.20010", 2 * sin(radians(20)) * 2e-5),
+        (2.0, 0.25, 0.0),
+        (2.0, "2e-1", 0.0),
+    ],
+)
+def test_rounding_takes_what_the_last_digits_can(module: float, shift: object, by: float) -> None:
+    (stage,) = gearbox(with_shift(pair(module=module), shift).having(11, center_distance=(300, "mm"))).stages
+    assert stage.by_rounding == pytest.approx(by, abs=2e-7)
 
 
 def test_helical_stages_are_read_with_their_backlash() -> None:
@@ -363,7 +461,8 @@ def test_helical_gears_are_drafted_with_their_train() -> None:
     assert told[0] == "Tolerances from box.rexs: none, all builds are nominal."
     assert [own for own in told if "has no backlash without tolerances" in own] == [
         "cylindrical_stage 18 has no backlash without tolerances: normal backlash 0.001 um.",
-        "cylindrical_stage 19 has no backlash without tolerances: normal backlash -0.004 um.",
+        "cylindrical_stage 19 has no backlash without tolerances: normal backlash -0.004 um; rounding of the last "
+        "digits of x and center_distance can take 0.045 um: x of gear 15 is less by 9.1e-07 in the scene.",
     ]
     assert read["moves"]["slow"]["azimuth"] == "180 deg"  # back to the first axis
 

@@ -104,6 +104,9 @@ def prepare(page: str, tol3d: Command) -> None:
         Path("scene.yaml").write_text(thin("two_plates"), "utf-8")
     elif page == "rexs.md":
         shutil.copy(ROOT / "tests" / "drafting" / "spur_stage.rexs", "gearbox.rexs")
+    elif page == "gear_engineers.md":
+        (scene,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / page).read_text("utf-8"), re.DOTALL)
+        Path("edited.yaml").write_text(scene.replace("trials: 10000", f"trials: {TRIALS}"), "utf-8")
     elif page == "step.md":
         for name, file in (
             ("box", "nist_ctc_01"),

@@ -53,3 +53,13 @@ def test_a_file_of_ones_own_comes_before_the_scene_of_its_name(tmp_path: Path, m
     assert scene_path("spur_pair").samefile(SCENES / "spur_pair.yaml")
     (tmp_path / "bevel_pair").write_text("mine", "utf-8")
     assert scene_path("bevel_pair") == Path("bevel_pair")
+
+
+def test_a_gearbox_is_copied_by_its_whole_name(tol3d: Command, tmp_path: Path) -> None:
+    name = "planetary_stage.rexs"
+    code, out, _ = tol3d("scenes", "--copy", name, "--out", str(tmp_path))
+    assert (code, out.split()) == (0, [str(tmp_path / name)])
+    assert (tmp_path / name).read_bytes() == (SCENES / name).read_bytes()
+    code, _, err = tol3d("scenes", "--copy", "planetary_stage", "--out", str(tmp_path))
+    assert code == 2
+    assert name in err

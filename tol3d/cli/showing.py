@@ -140,7 +140,7 @@ def workspace(
 
 def scenes(
     copy: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Copy that scene, with its files, to edit it.")
+        str | None, typer.Option(metavar="NAME", help="Copy that scene, with its files, or planetary_stage.rexs.")
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder to copy into.")] = Path(),
 ) -> None:

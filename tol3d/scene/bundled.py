@@ -11,12 +11,19 @@ from tol3d.scene.name import LONGEST_NAME
 from tol3d.scene.nearest import nearest
 
 PACKAGE: Final = "tol3d.scenes"
+FOREIGN: Final = (".rexs",)
 
 
 def bundled_scenes() -> Mapping[str, Path]:
     """The bundled scenes, by name."""
     brought = (Path(str(file)) for file in files(PACKAGE).iterdir())
     return {path.stem: path for path in sorted(brought) if path.suffix == ".yaml"}
+
+
+def bundled_files() -> Mapping[str, Path]:
+    """Bundled files of other systems that scenes are drafted from, such as gearboxes, by their whole names."""
+    brought = (Path(str(file)) for file in files(PACKAGE).iterdir())
+    return {path.name: path for path in sorted(brought) if path.suffix in FOREIGN}
 
 
 def scene_path(scene: Path | str) -> Path:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from tol3d.errors import InputError, unwritable
 from tol3d.files import FileContent
-from tol3d.scene.bundled import bundled_scenes
+from tol3d.scene.bundled import bundled_files, bundled_scenes
 from tol3d.scene.grammar import Grammar
 from tol3d.scene.load import read_scene
 from tol3d.scene.nearest import hint
@@ -21,7 +21,12 @@ def scene_lines(grammar: Grammar) -> tuple[str, ...]:
 
 
 def copy_scene(name: str, folder: Path, grammar: Grammar) -> tuple[Path, ...]:
-    """Copy a bundled scene and the files that it names into a folder; nothing there is overwritten.
+    """Copy a bundled scene and the files that it names into a folder, or a bundled file; nothing is overwritten.
+
+    Args:
+        name: of a scene, or of a file with its ending, such as planetary_stage.rexs.
+        folder: to copy into.
+        grammar: of scenes.
 
     Returns:
         the scene's file, and those that it names.
@@ -29,12 +34,16 @@ def copy_scene(name: str, folder: Path, grammar: Grammar) -> tuple[Path, ...]:
     Raises:
         InputError: no such scene, a file of that name is there, or the folder cannot be written.
     """
-    scenes = bundled_scenes()
-    if name not in scenes:
-        raise InputError(f"expected the name of a bundled scene, got {name!r}{hint(name, scenes)}")
-    scene = read_scene(scenes[name], grammar, settle=False)
-    text = FileContent(scene.source, scene.source.read_bytes())
-    copies = {folder / scenes[name].name: text} | {folder / own: file for own, file in scene.files.items()}
+    scenes, others = bundled_scenes(), bundled_files()
+    if name not in {*scenes, *others}:
+        known = [*scenes, *others]
+        raise InputError(f"expected the name of a bundled scene, got {name!r}{hint(name, known)}")
+    if name in others:
+        copies = {folder / name: FileContent(others[name], others[name].read_bytes())}
+    else:
+        scene = read_scene(scenes[name], grammar, settle=False)
+        text = FileContent(scene.source, scene.source.read_bytes())
+        copies = {folder / scenes[name].name: text} | {folder / own: file for own, file in scene.files.items()}
     there = next((path for path in copies if path.exists()), None)
     if there is not None:
         raise InputError(f"{there}: is there already; choose another folder, or move it away")

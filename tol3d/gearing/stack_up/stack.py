@@ -10,10 +10,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.effects import ToothThickness
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.stack_up.term import Neglect, NominalMesh, Pair, Role
 from tol3d.gearing.stack_up.terms import contribution
-from tol3d.gearing.stack_up.tooth_pairs import ToothPairs, distinct, tooth_pairs
+from tol3d.gearing.stack_up.tooth_pairs import Moved, ToothPairs, distinct, tooth_pairs
 from tol3d.numerics.arrays import Array
 
 
@@ -33,6 +34,12 @@ class Stack(NominalMesh[Pair]):
         self._apart = tuple(
             own.opening for own in self.contributions if own.opening and (own.along_line or own.strains)
         )  # shifts of axes, and parts that grow
+        self._widens = tuple(
+            (contributor.name, effect.turn)
+            for contributor in model.contributors
+            for effect in contributor.effect.singles
+            if isinstance(effect, ToothThickness) and effect.part == mesh.driver
+        )  # half an angle of the driver's teeth [rad/mm]
 
     @property
     def nominal(self) -> float:
@@ -121,17 +128,15 @@ class Stack(NominalMesh[Pair]):
         taken = self.teeth.taken(side, built, angles, self._leans(deviations)[side], moved)
         return side * taken.reshape(count, positions)
 
-    def _moved(
-        self, deviations: Array, driver_angle: Array, trial: NDArray[np.int64] | None = None
-    ) -> tuple[Array, Array] | None:
-        """Increase of the distance of the axes and sideways shift of the driven one, (rows,) [mm] each.
+    def _moved(self, deviations: Array, driver_angle: Array, trial: NDArray[np.int64] | None = None) -> Moved | None:
+        """Axes and flanks that do not stand at their nominal places; None where all do.
 
         Args:
             deviations: (rows, components), or (trials, components) where `trial` says which of them each row is.
             driver_angle: (rows,) [rad].
             trial: (rows,).
         """
-        if not (self._apart or self.sideways):
+        if not (self._apart or self.sideways or self._widens):
             return None
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         apart, aside = np.zeros(len(driver_angle)), np.zeros(len(driver_angle))
@@ -139,7 +144,11 @@ class Stack(NominalMesh[Pair]):
             for term in terms:
                 own = deviations[:, self.model.component_slices[term.contributor.name]]
                 total += term.change(own if trial is None else own[trial], angles) / by
-        return apart, aside
+        wider = np.zeros(len(driver_angle))
+        for name, factor in self._widens:
+            own = deviations[:, self.model.component_slices[name]][:, 0]
+            wider += factor * (own if trial is None else own[trial])
+        return Moved(apart, aside, wider)
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
         """Loss by tilts at the upper end of the face, by side of the driver's touching flanks [mm], (rows,)."""

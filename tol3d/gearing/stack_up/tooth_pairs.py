@@ -14,7 +14,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,6 +106,20 @@ class BuiltTeeth:
     trial: Integers
 
 
+class Moved(NamedTuple):
+    """Axes and flanks of a mesh that do not stand at their nominal places, (rows,) each.
+
+    Args:
+        apart: how much further apart the axes stand [mm].
+        aside: how much further the driven one stands in the world's +y [mm].
+        wider: half of the angle by which the driver's teeth are wider [rad].
+    """
+
+    apart: Array
+    aside: Array
+    wider: Array
+
+
 @dataclass(frozen=True, eq=False)
 class ToothPairs:
     """The pairs of flanks of a mesh of spur gears, at least one of which has flanks that deviate one by one.
@@ -130,7 +144,7 @@ class ToothPairs:
         built: BuiltTeeth,
         driver_angle: Array,
         lean: Array,
-        moved: tuple[Array, Array] | None,
+        moved: Moved | None,
         turns: Role | None = "driven",
         apart: Array | None = None,
     ) -> Array:
@@ -141,8 +155,7 @@ class ToothPairs:
             built: their trials.
             driver_angle: (rows,) [rad].
             lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm].
-            moved: how much further apart the axes stand, and how much further the driven one in the world's +y,
-                (rows,) [mm] each; None if they are at their nominal places.
+            moved: axes and flanks off their nominal places; None if none is.
             turns: the gear that turns until the side touches; None reads its gap as the gears stand.
             apart: by which the side stands open before [mm], (rows,), where anything but the driven gear turns.
         """
@@ -159,17 +172,19 @@ class ToothPairs:
         )
         return found
 
-    def _shifts(self, side: int, moved: tuple[Array, Array] | None) -> Array:
-        """Change by moved axes of a tooth's roll on the line of centres [rad] and of the tangent [mm], (rows, 2).
+    def _shifts(self, side: int, moved: Moved | None) -> Array:
+        """Change by moved axes and flanks of a tooth's roll on the line of centres [rad] and of the tangent [mm].
+
+        (rows, 2); flanks of wider teeth meet as much earlier as they stand further out.
 
         Axes that stand dx further apart touch at a pressure angle that is dx/(a tan alpha_w) larger, along a tangent
         that is dx/sin(alpha_w) longer; a line of centres that turns by dy/a takes the path of contact along.
         """
         if moved is None:
             return np.zeros((0, 2))
-        apart, aside = moved
+        apart, aside, wider = moved
         alpha, distance = self.pair.working_pressure_angle, self.pair.centre_distance
-        rolls = (apart / math.tan(alpha) + side * aside) / distance
+        rolls = (apart / math.tan(alpha) + side * aside) / distance + wider
         return np.stack([rolls, apart / math.sin(alpha)], axis=-1)
 
     @property

@@ -7,6 +7,7 @@ writes.
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from decimal import Decimal
 from typing import Final, Literal, ParamSpec, TypeVar
 
 from tol3d.cad.step import shown
@@ -125,6 +126,17 @@ class Component:
             return None
         known, attribute = self.attribute(name) or (name, Attribute("", ()))
         return self._finite(known, written) * self._factor(known, attribute.unit, kind)
+
+    def last_digit(self, name: str, kind: Kind = "number") -> float:
+        """A one in the last decimal of a number as it is written [mm, rad, 1]; 0 without decimals, or without it."""
+        found = self.attribute(name)
+        try:
+            exponent = Decimal(found[1].values[0].strip()).as_tuple().exponent if found else 0
+        except (ArithmeticError, IndexError):
+            return 0.0
+        if found is None or not isinstance(exponent, int) or exponent >= 0:
+            return 0.0
+        return 10.0**exponent * self._factor(found[0], found[1].unit, kind)
 
     def whole(self, name: str) -> int | None:
         """A whole number; None without one.

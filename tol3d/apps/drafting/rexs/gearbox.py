@@ -8,6 +8,8 @@ from typing import Final
 from tol3d.numerics.arrays import Array
 
 MOST_NAMED: Final = 3  # parts of one kind in a line
+ROUNDED: Final = 1e-3  # mm or 1; numbers with a coarser last digit are those of a design
+NOISE: Final = 1e-7  # mm; of normal backlashes, by the last bits of a double
 COPY: Final = " @ "
 """Parts a name from the place of a copy, where a program repeats what each planet has."""
 
@@ -43,6 +45,7 @@ class Gear:
         face_width: [mm]; None if the file does not say it.
         profile_shift: x, positive for thicker teeth; None if the file does not say it.
         shift_guess: reason for a profile shift that the file does not say; "" for one that it says.
+        shift_digit: a one in the last decimal of the profile shift as the file has it; 0 without decimals.
         tip_diameter: [mm]; None if the file does not say it, or one below the reference circle's.
         start: of its face along the shaft [mm]; None if the file does not say it.
         series: of DIN 3967, such as cd25; "" for none.
@@ -65,6 +68,7 @@ class Gear:
     allowances: Sequence[Allowance]
     classes: Mapping[str, int]
     shift_guess: str = ""
+    shift_digit: float = 0.0
 
     @property
     def helical(self) -> bool:
@@ -108,6 +112,7 @@ class Stage:
             file does not say it.
         driven_by: the gear that the file says drives; None if it says none.
         backlash: smallest and largest normal backlash that the file's program worked out [mm]; None for none.
+        distance_digit: a one in the last decimal of the centre distance as the file has it [mm]; 0 without decimals.
     """
 
     id: int
@@ -120,6 +125,7 @@ class Stage:
     direction: float | None
     driven_by: int | None
     backlash: tuple[float, float] | None
+    distance_digit: float = 0.0
 
     @property
     def gears(self) -> tuple[Gear, Gear]:
@@ -175,9 +181,24 @@ class Stage:
         if tight is None or angle is None or len(shifts) < 2:
             return None
         excess = (tight - sum(shifts)) * 2.0 * math.tan(self.first.pressure_angle) / self.teeth_sum
-        helix = self.first.helix_angle
-        base_helix = math.asin(math.sin(helix) * math.cos(self.first.pressure_angle))
-        return 2.0 * self.centre_distance * math.cos(angle) * excess * math.cos(base_helix)
+        return 2.0 * self.centre_distance * math.cos(angle) * excess * self._base_helix_cosine
+
+    @property
+    def by_rounding(self) -> float:
+        """Largest normal backlash [mm] that rounding both profile shifts and the centre distance can take.
+
+        j_bn falls by 2 m_n sin α_n per x, and by 2 sin α_wt cos β_b per length of the centre distance; each number is
+        off by half of its last digit at most. Zeros at the end may be left out, so that both x have the finer digit.
+        Numbers without a third decimal are taken as those of a design, which are not rounded.
+        """
+        shift = min((gear.shift_digit for gear in self.gears if gear.shift_digit), default=0.0)
+        by_shifts = 2.0 * self.first.module * math.sin(self.first.pressure_angle) * _rounded(shift)
+        angle, distance = self.working_angle or 0.0, _rounded(self.distance_digit)
+        return by_shifts + math.sin(angle) * self._base_helix_cosine * distance + NOISE
+
+    @property
+    def _base_helix_cosine(self) -> float:
+        return math.cos(math.asin(math.sin(self.first.helix_angle) * math.cos(self.first.pressure_angle)))
 
     @property
     def _sense(self) -> int:
@@ -191,6 +212,11 @@ class Stage:
     def _transverse_angle(self) -> float:
         """tan α_t = tan α_n / cos β."""
         return math.atan(math.tan(self.first.pressure_angle) / math.cos(self.first.helix_angle))
+
+
+def _rounded(digit: float) -> float:
+    """A last digit of a number that is rounded; 0 of one that is not."""
+    return digit if digit <= ROUNDED else 0.0
 
 
 def base_name(name: str) -> str:

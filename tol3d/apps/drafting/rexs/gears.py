@@ -43,7 +43,7 @@ def gear_of(document: Document, gear: Component, flanks: Relation | None, left: 
     if teeth is None or teeth < 1:
         raise RexsError(f"{gear}: number_of_teeth: expected a number above 0, got {'none' if teeth is None else teeth}")
     module = gear.needed("normal_module", "length")
-    pressure_angle, shift = _flanks(document, gear, flanks, left)
+    pressure_angle, shift, digit = _flanks(document, gear, flanks, left)
     helix = gear.number("helix_angle_reference_diameter", "angle") or 0.0
     if not (module > 0.0 and 0.0 < pressure_angle < STEEPEST and abs(helix) < STEEPEST):
         raise RexsError(f"{gear}: expected a module and a pressure angle above 0, and angles below 69 deg")
@@ -67,19 +67,22 @@ def gear_of(document: Document, gear: Component, flanks: Relation | None, left: 
         series=left.spared(gear.text, SERIES) or "",
         allowances=tuple(_allowances(gear, left)),
         classes=left.spared(_classes, gear) or {},
+        shift_digit=digit,
     )
     return replace(read, tip_diameter=left.spared(_tip_diameter, gear, read))
 
 
-def _flanks(document: Document, gear: Component, flanks: Relation | None, left: LeftOut) -> tuple[float, float | None]:
-    """Pressure angle and profile shift, which both flanks have alike."""
+def _flanks(
+    document: Document, gear: Component, flanks: Relation | None, left: LeftOut
+) -> tuple[float, float | None, float]:
+    """Pressure angle and profile shift, which both flanks have alike, and the last digit of the latter."""
     sides = [] if flanks is None else [document.components[flanks.one(side)] for side in ("left", "right")]
     states = sides or [gear]
     angles = [own.needed("normal_pressure_angle", "angle") for own in states]
     shifts = [left.spared(own.number, "addendum_modification_coefficient") for own in states]
     if abs(angles[0] - angles[-1]) > SAME_ANGLE or not _alike(shifts[0], shifts[-1]):
         raise RexsError(f"{gear}: expected left and right flanks with one pressure angle and profile shift, got two")
-    return angles[0], shifts[0]
+    return angles[0], shifts[0], states[0].last_digit("addendum_modification_coefficient")
 
 
 def _alike(first: float | None, second: float | None) -> bool:

@@ -141,6 +141,7 @@ def _stage(
         direction=None if turned is None else -turned,
         driven_by=driving.get(stage.id),
         backlash=left.spared(limits_of, stage, "minimum_normal_backlash", "maximum_normal_backlash"),
+        distance_digit=stage.last_digit("center_distance", "length"),
     )
 
 

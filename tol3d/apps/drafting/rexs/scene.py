@@ -10,9 +10,9 @@ from tol3d.apps.drafting.entry import Entry, Scene
 from tol3d.apps.drafting.rexs.assembly import chosen_bearings, measures, moves, nominal, parts, trains_of
 from tol3d.apps.drafting.rexs.container import read_document
 from tol3d.apps.drafting.rexs.document import RexsError
-from tol3d.apps.drafting.rexs.gearbox import Gearbox, Stage
+from tol3d.apps.drafting.rexs.gearbox import NOISE, Gearbox, Stage
 from tol3d.apps.drafting.rexs.kinematics import Mounting, drives, mounting
-from tol3d.apps.drafting.rexs.limits import tolerances
+from tol3d.apps.drafting.rexs.limits import tolerances, um
 from tol3d.apps.drafting.rexs.named import Named, named, scene_shafts
 from tol3d.apps.drafting.rexs.reading import gearbox_of
 from tol3d.apps.drafting.words import cleaned, comment, scalar
@@ -22,7 +22,7 @@ from tol3d.files import FileContent
 from tol3d.simulate import Overrides, load_text, simulation_of
 
 SCENE: Final = Path("scene.yaml")
-TIGHT: Final = 5e-4  # mm; normal backlash that is none: files print profile shifts with 4 digits and more
+TIGHT: Final = 5e-4  # mm; normal backlash that is told as none
 MOST_NOTES: Final = 12  # lines on the screen; all of them are in the scene
 
 
@@ -83,8 +83,9 @@ class GearboxDraft:
         for stage in self.gearbox.stages:
             backlash = stage.normal_backlash
             if backlash is not None and backlash < TIGHT:
-                why = "no backlash" if backlash > -TIGHT else "teeth that interfere"
-                yield f"cylindrical_stage {stage.id} has {why} without tolerances: {nominal(stage)}."
+                why = "no backlash" if backlash >= -stage.by_rounding else "teeth that interfere"
+                told = f"; {_rounding_words(stage)}" if backlash < -NOISE else ""
+                yield f"cylindrical_stage {stage.id} has {why} without tolerances: {nominal(stage)}{told}."
 
     def _left_out(self) -> list[str]:
         own = [entry for entry in self.entries if entry.section == "tolerances"]
@@ -120,8 +121,10 @@ def _settled(drafted: GearboxDraft) -> str:
     except SceneError as error:
         problem = error.problems[0]
         place = f"{problem.path}: " if problem.path else ""
+        stages = [own for own in drafted.gearbox.stages if (own.normal_backlash or 0.0) < -own.by_rounding]
+        tight = "".join(f"; cylindrical_stage {own.id}: {nominal(own)}, {_rounding_words(own)}" for own in stages)
         lost = [f"; left out: {entry.label}: {entry.refused}" for entry in drafted.entries if entry.refused]
-        raise RexsError(f"its scene cannot be simulated: {place}{problem.sentence}{''.join(lost)}") from None
+        raise RexsError(f"its scene cannot be simulated: {place}{problem.sentence}{tight}{''.join(lost)}") from None
 
 
 def gearbox_draft(content: FileContent) -> GearboxDraft:
@@ -154,16 +157,24 @@ def _all_places(mounted: Sequence[tuple[object, Mounting]]) -> Mounting:
 
 
 def _rounding(stages: Sequence[Stage]) -> dict[int, float]:
-    """Profile shift that gears without limits have too much of, for the file's rounding makes teeth interfere.
+    """Profile shift that gears without limits have too much of, where the file's rounding can make teeth interfere.
 
     Scenes whose nominal teeth interfere, by however little, are refused.
     """
     less = dict[int, float]()
     for stage in stages:
         excess = sum(gear.profile_shift or 0.0 for gear in stage.gears) - (stage.tight_shift or 0.0)
-        if -TIGHT < (stage.normal_backlash or 0.0) < 0.0 and not any(gear.stated for gear in stage.gears):
+        if -stage.by_rounding <= (stage.normal_backlash or 0.0) < 0.0 and not any(gear.stated for gear in stage.gears):
             less[stage.second.id] = max(excess, less.get(stage.second.id, 0.0))
     return less
+
+
+def _rounding_words(stage: Stage) -> str:
+    """Words on what rounding can do to the backlash of a stage, and on x that is less for it."""
+    by = um(float(f"{1e-9 * round(1e9 * stage.by_rounding):.2g}"))
+    less = _rounding([stage])
+    told = f"rounding of the last digits of x and center_distance can take {by}"
+    return f"{told}: x of gear {stage.second.id} is less by {less[stage.second.id]:.2g} in the scene" if less else told
 
 
 def _unsaid(gearbox: Gearbox, names: Named) -> Iterator[str]:
