@@ -115,7 +115,7 @@ def _at_height(plane: Array, z: float) -> Array:
 def tessellate(gear: SpurGear | InternalGear, deflection: float) -> Arrays:
     """See tol3d.cad.solids.swept_cad.swept_mesh; vertices know the side of their tooth."""
     kind = internal_gear if isinstance(gear, InternalGear) else spur_gear
-    straight = kind.build_straight(gear)  # type: ignore[arg-type]  # each module has its own gears
+    straight = kind.build_straight(gear)
     mesh = swept_mesh(straight, gear.face_width, deflection, gear.twist)
     return mesh.arrays(np.tile(_sides(mesh.rims, mesh.count), mesh.layers))
 
