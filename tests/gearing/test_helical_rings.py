@@ -70,10 +70,11 @@ def random_pair(rng: np.random.Generator) -> tuple[InternalPair, tuple[ScrewGear
             inner = SpurGear(z1, module, ALPHA, faces[0], x1, heights[0], helix_angle=beta, hand=hand)
             ring = InternalGear(z2, module, ALPHA, faces[1], x2, heights[1], helix_angle=beta, hand=hand)
             tight = InternalPair(inner, ring, 10 * ring.tip_radius).zero_backlash_centre_distance
-            gears = [
-                replace(gear, tooth_thickness_deviation=-off) for gear, off in zip((inner, ring), thin, strict=True)
-            ]
-            pair = InternalPair(gears[0], gears[1], tight - 0.01 * module)
+            pair = InternalPair(
+                replace(inner, tooth_thickness_deviation=-thin[0]),
+                replace(ring, tooth_thickness_deviation=-thin[1]),
+                tight - 0.01 * module,
+            )
             pair.refuse_interference()
         except GeometryError:
             continue
@@ -118,9 +119,9 @@ def test_a_helix_that_vanishes_reads_what_the_spur_kernel_reads() -> None:
     spur = replace(spur, centre_distance=spur.zero_backlash_centre_distance - 0.03)
     rng = np.random.default_rng(3)
     for ring_drives in (False, True):
-        gears = (spur.wheel, spur.pinion) if ring_drives else (spur.pinion, spur.wheel)
-        plain = InternalPair(*gears, spur.centre_distance)
-        leaning = InternalPair(*(replace(gear, helix_angle=1e-9) for gear in gears), spur.centre_distance)  # type: ignore[arg-type]
+        first, second = (spur.wheel, spur.pinion) if ring_drives else (spur.pinion, spur.wheel)
+        plain = InternalPair(first, second, spur.centre_distance)
+        leaning = replace(plain, pinion=replace(first, helix_angle=1e-9), wheel=replace(second, helix_angle=1e-9))
         for flank in (RIGHT, LEFT):
             places, angle = random_places(rng), float(rng.uniform(-3.0, 3.0))
             across = [(x, y, 0.0) for x, y, _ in places.shifts]  # along the axis such a helix turns its mate by 5e-12

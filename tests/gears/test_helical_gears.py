@@ -180,7 +180,7 @@ def random_rings(count: int) -> list[tuple[InternalGear, ScrewGear]]:
         teeth, module, beta = int(rng.integers(40, 120)), float(rng.uniform(0.8, 6.0)), math.radians(rng.uniform(5, 40))
         hand: Hand = RIGHT_HAND if rng.random() < 0.5 else LEFT_HAND
         shift, thinner = float(rng.uniform(-0.3, 0.2)), float(rng.uniform(0, 0.05)) * module
-        own = {"helix_angle": beta, "hand": hand, "profile_shift": shift, "addendum": 0.9}
+        own: dict[str, Any] = {"helix_angle": beta, "hand": hand, "profile_shift": shift, "addendum": 0.9}
         try:
             ring = InternalGear(teeth, module, ALPHA, 10 * module, tooth_thickness_deviation=-thinner, **own)
         except GeometryError:

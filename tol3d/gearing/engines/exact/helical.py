@@ -192,9 +192,9 @@ def first_end(own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigm
     rate, tangent = falling(own, mate, senses, pose, sigma)
     if tangent == 0.0:
         return face
-    if rate > 0.0:
-        return float(max(own.low, mate.low - pose.z))
-    return float(min(own.high, mate.high - pose.z))
+    low: float = max(own.low, mate.low - pose.z)
+    high: float = min(own.high, mate.high - pose.z)
+    return low if rate > 0.0 else high
 
 
 @variant(first_face, HelicalTooth)
