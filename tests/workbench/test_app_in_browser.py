@@ -2,6 +2,7 @@
 
 import html
 import json
+import math
 import re
 import socket
 from collections.abc import Iterator, Mapping
@@ -293,7 +294,7 @@ def test_sliders_of_joints_move_an_arm_and_its_error_is_an_arrow_at_the_tool(app
         app.told(slider.format(k), "input", angle)
         app.told(slider.format(k), "change", angle)
     assert app.page.ask("document.querySelector('#stands output').value") == "-40.0°"
-    tool = json.dumps([*tool_by_hand(AXES, TOOL, np.radians(angles))])
+    tool = json.dumps([*tool_by_hand(AXES, TOOL, [math.radians(own) for own in angles])])
     app.page.wait(f"Math.hypot(...{PLACE.format('link 3.tool')}.map((own, k) => own - {tool}[k])) < 2e-3")
     app.told("#build", "change", "trial")
     app.page.wait("document.querySelector('#factor').max === '2'")

@@ -39,7 +39,7 @@ def _row(simulation: Simulation) -> Row:
 
 def _tool_at(angles: tuple[float, ...]) -> np.ndarray:
     """Where the tool is at inputs in degrees (3,) [mm]."""
-    return tool_by_hand(AXES, TOOL, np.radians(angles))
+    return tool_by_hand(AXES, TOOL, [math.radians(own) for own in angles])
 
 
 def _states(simulation: Simulation, **how: Any) -> dict[str, list[dict[str, Any]]]:

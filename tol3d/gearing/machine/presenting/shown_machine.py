@@ -162,10 +162,10 @@ def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine | ShownPa
     system = seen.simulation.system
     assert isinstance(system, MachineSystem)
     if system.alone:
-        placed = _in_poses(seen, label, magnify)[system.alone]
+        parts = _in_poses(seen, label, magnify)[system.alone]
         notes = (f"deviations magnified {magnify:g} times",) if magnify != 1.0 else ()
-        rigid = (RIGID,) if placed.has_solids else ()
-        return ShownParts(label, (*notes, *rigid), _posed(system, system.alone, placed, magnify))
+        rigid = (RIGID,) if parts.has_solids else ()
+        return ShownParts(label, (*notes, *rigid), _posed(system, system.alone, parts, magnify))
     build = seated_build(seen, label, magnify=magnify)
     trials = seen.trials if build.magnify == 1.0 else magnified(system, seen.trials, build.magnify)
     if "" in system.poses:
@@ -184,7 +184,8 @@ def _in_poses(seen: Replay, label: str, magnify: float) -> Mapping[str, Placed]:
     Raises:
         RunError: they cannot be placed.
     """
-    system, found = seen.simulation.system, {}
+    system, found = seen.simulation.system, dict[str, Placed]()
+    assert isinstance(system, MachineSystem)
     for pose, own in system.shown_poses.items():
         deviations = Trials(system.in_pose(seen.trials.part(0, 1), pose), {})
         placed = placed_in(own.assembly, magnified(own, deviations, magnify).deviations)
