@@ -2,6 +2,7 @@
 
 import html
 import json
+import math
 import re
 import socket
 from collections.abc import Iterator, Mapping
@@ -16,6 +17,8 @@ import pytest
 import uvicorn
 from app_folders import until
 from browser import Page, browser
+from machine.arm_by_hand import AXES, TOOL, arm_scene, tool_by_hand
+from machine.arm_by_hand import POSES as ARM_POSES
 from places import SCENES, SPUR_PAIR
 
 from tol3d.apps.workbench.place import FolderLock
@@ -27,6 +30,9 @@ pytestmark = pytest.mark.slow
 SCENE, CENTRE, BACKLASH = "pair.yaml", "centre distance", "normal backlash"
 TEXT = SPUR_PAIR.read_text("utf-8").replace("trials: 2000", "trials: 200")
 DOOR = (SCENES / "door.yaml").read_text("utf-8").replace("trials: 20000", "trials: 200")
+ERRORS = """
+  off up: {kind: position_error, of: link 3.tool, from: base, at: up}
+  off at home: {kind: position_error, of: link 3.tool, from: base, at: home}"""
 KEYS = {"ArrowRight": 39, "ArrowDown": 40, "Tab": 9, "PageUp": 33, "z": 90, "s": 83, "?": 191, "Escape": 27}
 SLIDER = f'#sliders input[type=range][data-line="{CENTRE}"]'
 FIELD = f'#sliders input[type=text][data-line="{CENTRE}"]'
@@ -152,6 +158,8 @@ def app(tmp_path_factory: pytest.TempPathFactory) -> Iterator[App]:
     file.write_text(TEXT, "utf-8")
     (folder / "other.yaml").write_text(TEXT, "utf-8")
     (folder / "door.yaml").write_text(DOOR, "utf-8")
+    (folder / "arm.yaml").write_text(arm_scene(measures=ERRORS).replace("trials: 400", "trials: 50"), "utf-8")
+    (folder / "crank.yaml").write_text((SCENES / "slider_crank.yaml").read_text("utf-8"), "utf-8")
     with socket.create_server(("127.0.0.1", 0)) as listening, FolderLock(folder) as lock, browser() as page:
         own = Server(Workspace.of(file), lock)
         guarded = application(own, listening.getsockname()[1])
@@ -262,6 +270,63 @@ def test_the_number_beside_deviations_is_that_of_the_words_beneath(app: App) -> 
     words = app.page.ask("document.querySelector('#stage-words').textContent")
     assert f"magnified {app.page.ask('document.querySelector(`#stage output`).value')} times, not 100" in words
     app.told("#build", "change", "nominal")
+
+
+def _opened(app: App, name: str) -> None:
+    """Choose another scene, and wait until it is there in 3D."""
+    app.told("#scene", "change", name)
+    app.page.wait(f"tol3dApp.app.scene === {name!r} && document.querySelector('#stands select') !== null")
+    app.page.wait("document.querySelector('#stage-words').textContent.startsWith('nominal')")
+    app.page.wait("document.querySelectorAll('.names span').length > 0")
+
+
+PLACE = "[...document.querySelectorAll('.names span')].find((own) => own.textContent.startsWith('{}')).place.toArray()"
+"""Of a feature in 3D, in mm."""
+
+
+def test_sliders_of_joints_move_an_arm_and_its_error_is_an_arrow_at_the_tool(app: App) -> None:
+    app.load()
+    _opened(app, "arm.yaml")
+    slider = '#stands input[data-coordinate="joint {}"]'
+    values = "[...document.querySelectorAll('#stands input')].map((own) => own.valueAsNumber)"
+    assert app.page.ask(values) == [*ARM_POSES["up"]], "as the first measure is read"
+    app.told("#stands select", "change", "home")
+    assert app.page.ask(values) == [*ARM_POSES["home"]]
+    angles = (-40.0, 25.0, 60.0)
+    for k, angle in enumerate(angles, 1):
+        app.told(slider.format(k), "input", angle)
+        app.told(slider.format(k), "change", angle)
+    assert app.page.ask("document.querySelector('#stands output').value") == "-40.0°"
+    tool = json.dumps([*tool_by_hand(AXES, TOOL, [math.radians(own) for own in angles])])
+    app.page.wait(f"Math.hypot(...{PLACE.format('link 3.tool')}.map((own, k) => own - {tool}[k])) < 2e-3")
+    app.told("#build", "change", "trial")
+    app.page.wait("document.querySelector('#factor').max === '2'")
+    long = "(own => own ? own.getTotalLength() : 0)(document.querySelector('.measured .error'))"
+    number = "document.querySelector('.names .number').textContent"
+    app.page.wait(f"{number}.startsWith('off up ') && {number}.endsWith(', as it stands')")
+    before = app.page.ask(number), app.page.ask(long)
+    app.told("#factor", "input", 2)
+    assert app.page.ask(number) == before[0]
+    assert app.page.ask(long) > max(3 * before[1], 10.0)
+    app.told("#factor", "input", 0)
+    app.told("#stands select", "change", "")
+    app.page.wait(f"!{number}.endsWith(', as it stands')")
+    app.told("#build", "change", "nominal")
+    assert app.page.told == []
+
+
+def test_a_path_is_played(app: App) -> None:
+    app.load()
+    _opened(app, "crank.yaml")
+    face = PLACE.format("slider.face")
+    app.page.ask(f"window.faces = [], window.looking = setInterval(() => faces.push({face}[0]), 10)")
+    app.page.ask("document.querySelector('#stands button').click()")
+    app.page.wait("document.querySelector('#stands output').value === 'step 24 of 24'")
+    app.page.wait(f"Math.abs({face}[0] - (126.491106 - 40)) < 1e-3")  # crank and rod on one line
+    faces = app.page.ask("clearInterval(looking), faces")
+    assert len({*faces}) > 12
+    assert faces in (sorted(faces), sorted(faces, reverse=True)), "it goes one way"
+    assert app.page.told == []
 
 
 def test_reset_aside_and_a_reload(app: App) -> None:

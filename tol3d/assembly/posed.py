@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import override
 
-from tol3d.assembly.grammar.checks import paths_of, pose_names, read_at
+from tol3d.assembly.grammar.checks import paths_of, pose_names, read_at, read_in
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.methods import PlacingMethod
 from tol3d.assembly.model import Assembly
@@ -22,6 +22,7 @@ from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import Answers, Codes, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
 from tol3d.study.system.plain import PlainMeasure
+from tol3d.study.system.posable import AS_SET, Coordinate
 from tol3d.study.system.positions import Positions
 from tol3d.study.system.system import Columns, KeyPath
 from tol3d.study.system.trials import Trials
@@ -72,6 +73,26 @@ class PosedSystem(AssemblySystem):
             else:
                 found[pose] = self.poses[pose]
         return found
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """See Posable: steps along its paths."""
+        return tuple(Coordinate(name, 0.0, len(poses) - 1.0, "") for name, poses in self.paths.items())
+
+    def shown_in(self, pose: str) -> "PosedSystem":
+        """See Posable: all of its poses are at hand."""
+        return self
+
+    def standing(self, values: Mapping[str, float], measures: Sequence[str]) -> "PosedSystem":
+        """See Posable."""
+        assert self.scene is not None
+        name, step = next(iter(values.items()))
+        pose = self.paths[name][round(step)]
+        own = assembly_system(self.scene.model_copy(update={"measures": read_in(self.scene, pose)}), pose)
+        own = replace(own, measures=tuple(measure for measure in own.measures if measure.name in measures))
+        here = {measure.name: (AS_SET,) for measure in own.measures}
+        of_own = {each.name: getattr(own, each.name) for each in fields(own)}
+        return PosedSystem(**of_own, poses={AS_SET: own}, at=here)
 
     @property
     @override

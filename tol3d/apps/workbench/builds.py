@@ -3,7 +3,7 @@
 import json
 import secrets
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
@@ -11,12 +11,14 @@ import numpy as np
 from tol3d.errors import InputError, Tol3dError
 from tol3d.numerics.arrays import Array
 from tol3d.report import ViewModel, display_build
+from tol3d.report.body import World
 from tol3d.report.number import measured_text
 from tol3d.report.presenter import Display
 from tol3d.report.shown_unit import shown_unit
 from tol3d.simulate import Replay, replayed
 from tol3d.study import Simulation
 from tol3d.study.system import System, Trials, nominal_build
+from tol3d.study.system.posable import Posable
 
 NOMINAL: Final = "nominal"
 FACTORS: Final = (1.0, 10.0, 100.0)
@@ -24,6 +26,8 @@ FACTORS: Final = (1.0, 10.0, 100.0)
 MOST_MESHES: Final = 400
 """Meshes that a page keeps; beyond them it gets all anew."""
 NO_REASONS: Final[Mapping[str, str]] = {}
+AS_STATED: Final[Mapping[str, float]] = {}
+STANDS: Final = ", as it stands"
 NO_MODELS: Final[Mapping[str, ViewModel]] = {}
 TURN: Final = 360.0  # deg; a slider turns no further, after which a position looks alike
 
@@ -105,6 +109,7 @@ def build_view(
     world: str = "",
     measure: str = "",
     at: Mapping[str, Array] | None = None,
+    standing: Mapping[str, float] = AS_STATED,
     kept: Mapping[str, ViewModel] = NO_MODELS,
 ) -> tuple[ViewModel, dict[str, Any]]:
     """The nominal build and others, as `viewer.js` shows them.
@@ -113,10 +118,11 @@ def build_view(
         simulation: of the scene.
         rows: each further build by its name.
         factors: of the deviations, the least first; those with which a build cannot be shown are left out.
-        world: the one that is shown; "" for that with the most parts, of those in which `measure` is read if there are
-            some.
+        world: the one that is shown; "" for that in which `measure` is read, where it is largest, or that with the most
+            parts.
         measure: by its name.
         at: positions of all builds, a number each by name; None: their own, the nominal build with those of the first.
+        standing: values of coordinates by which parts stand, see `Posable`; none: in the poses that are stated.
         kept: models by world whose meshes are shared; new ones are added to them.
 
     Returns:
@@ -126,28 +132,69 @@ def build_view(
     Raises:
         Tol3dError: the nominal build cannot be shown, or there is no such world.
     """
+    if standing:
+        simulation, world = _standing(simulation, standing, measure), ""
     rest = nominal_build(simulation.system)
     own = next((row.positions for row in rows.values()), None) if at is None else at
     build = replayed(simulation, _trials(rest, rest.deviations[0], own))
     nominal, refused = display_build(build, NOMINAL), dict[str, str]()
-    worlds = [own for own in nominal.worlds if own.bodies]
-    reading = [own for own in worlds if measure in own.measured]
-    if not world and reading:
-        world = max(reading, key=lambda own: len(own.bodies)).name
-    elif not world and worlds:
-        world = max(worlds, key=lambda own: len(own.bodies)).name
-    model = kept[world].kept() if world in kept else ViewModel(wanted=world)
-    model.add(NOMINAL, [(1.0, nominal, _words(NOMINAL, nominal))], _values(build))
+    others = dict[str, tuple[Replay, Display]]()
     for name, row in rows.items():
         trials = _trials(rest, row.deviations, row.positions if at is None else at)
         try:
-            build = replayed(simulation, trials)
-            model.add(name, _displays(build, name, row.words, factors), _values(build))
+            other = replayed(simulation, trials)
+            others[name] = other, display_build(other, name, magnify=factors[0])
+        except Tol3dError as error:
+            refused[name] = str(error)
+    worlds = [own for own in nominal.worlds if own.bodies]
+    reading = {own.name: own for own in worlds if measure in own.measured}
+    if not world and reading:
+        first = next((display for _, display in others.values()), nominal)
+        its = {own.name: _long(own, measure) for own in first.worlds}
+        world = max(reading, key=lambda own: (len(reading[own].bodies), its.get(own, 0.0)))
+    elif not world and worlds:
+        world = max(worlds, key=lambda own: len(own.bodies)).name
+    model, more = kept[world].kept() if world in kept else ViewModel(wanted=world), STANDS if standing else ""
+    model.add(NOMINAL, [(1.0, nominal, _words(NOMINAL, nominal))], _values(build, more))
+    for name, (other, display) in others.items():
+        displays = _displays(_shown_in(other, world), display, name, rows[name].words, factors)
+        try:
+            model.add(name, displays, _values(other, more))
         except Tol3dError as error:
             refused[name] = str(error)
     shown = model.told()
-    reads = any(own.name == shown["world"] for own in reading)
+    reads = shown["world"] in reading
     return model, {**shown, "worlds": [own.name for own in worlds], "measured": reads, "refused": refused}
+
+
+def _standing(simulation: Simulation, values: Mapping[str, float], measure: str) -> Simulation:
+    """The scene as its parts stand at values of coordinates.
+
+    Raises:
+        InputError: there are no such coordinates, or they do not go so far.
+    """
+    system = simulation.system
+    known = {own.name: own for own in system.coordinates} if isinstance(system, Posable) else {}
+    for name, value in values.items():
+        if name not in known:
+            raise InputError(f"expected one of {', '.join(known) or 'no joints'}, got {name!r}")
+        if not known[name].low <= value <= known[name].high:
+            raise InputError(f"{name}: expected {known[name].low:g} to {known[name].high:g}, got {value:g}")
+    assert isinstance(system, Posable)
+    return replace(simulation, system=system.standing(values, [measure or system.measures[0].name]))
+
+
+def _shown_in(build: Replay, world: str) -> Replay:
+    """A build of which only the parts in a pose are shown, where the world is one."""
+    system = build.simulation.system
+    if not isinstance(system, Posable):
+        return build
+    return replace(build, simulation=replace(build.simulation, system=system.shown_in(world)))
+
+
+def _long(world: World, measure: str) -> float:
+    """Length of the lines of a measure in a world [mm]."""
+    return sum(float(np.linalg.norm(own.points[-1] - own.points[0])) for own in world.measured.get(measure, ()))
 
 
 def _trials(rest: Trials, deviations: Array, positions: Mapping[str, Array] | None) -> Trials:
@@ -155,18 +202,15 @@ def _trials(rest: Trials, deviations: Array, positions: Mapping[str, Array] | No
     return Trials(np.atleast_2d(deviations), standing)
 
 
-def _displays(build: Replay, name: str, words: str, factors: Sequence[float]) -> Iterator[tuple[float, Display, str]]:
-    """A build by every factor with which it can be shown.
-
-    Raises:
-        Tol3dError: it cannot be by the first.
-    """
-    for factor in factors:
+def _displays(
+    build: Replay, first: Display, name: str, words: str, factors: Sequence[float]
+) -> Iterator[tuple[float, Display, str]]:
+    """A build by every factor with which it can be shown; by the first one it is."""
+    yield factors[0], first, words + _words(name, first)
+    for factor in factors[1:]:
         try:
             display = display_build(build, name, magnify=factor)
         except Tol3dError:
-            if factor == factors[0]:
-                raise
             return
         yield factor, display, words + _words(name, display)
 
@@ -175,14 +219,14 @@ def _words(name: str, display: Display) -> str:
     return "; ".join((name, *display.notes))
 
 
-def _values(build: Replay) -> Mapping[str, str]:
-    """Values of the measures of a build, in words; none of curves."""
+def _values(build: Replay, more: str) -> Mapping[str, str]:
+    """Values of the measures of a build, in words, with more words after them; none of curves."""
     found = dict[str, str]()
     for measure in build.simulation.system.measures:
         value = build.geometric.get(measure.name, build.analytic.get(measure.name))
         if isinstance(value, float) and np.isfinite(value):
             unit = shown_unit(measure.unit, value)
-            found[measure.name] = measured_text(value * (1e-3 if unit != measure.unit else 1.0), unit)
+            found[measure.name] = measured_text(value * (1e-3 if unit != measure.unit else 1.0), unit) + more
     return found
 
 
@@ -214,6 +258,11 @@ def turnable(system: System) -> list[dict[str, Any]]:
             {"name": name, "words": words, "share": share, "low": low, "high": low + share * (high - low), "unit": unit}
         )
     return found
+
+
+def stands(system: System) -> list[dict[str, Any]]:
+    """Coordinates by which parts stand, for JSON; see `Coordinate`."""
+    return [asdict(own) for own in system.coordinates] if isinstance(system, Posable) else []
 
 
 def _columns(system: System, shares: Mapping[str, float]) -> Mapping[str, float]:

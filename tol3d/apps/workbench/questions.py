@@ -17,7 +17,7 @@ from typing import Any, Final
 from tol3d.analyses.kept_changes import scene_with
 from tol3d.analyses.subject import Subject
 from tol3d.apps.workbench.asked_analysis import refusal
-from tol3d.apps.workbench.builds import FACTORS, Known, Row, Stage, positions_at, turnable
+from tol3d.apps.workbench.builds import FACTORS, Known, Row, Stage, positions_at, stands, turnable
 from tol3d.apps.workbench.card import answer, histogram, limit_fields, result, sliders, written_words
 from tol3d.apps.workbench.flags import flags
 from tol3d.apps.workbench.forms import ANALYSES, FormScene, form, line_words
@@ -121,6 +121,7 @@ class Questions:
             "warnings": [*session.simulation.warnings],
             "trials": session.simulation.study.trials,
             "positions": turnable(session.simulation.system),
+            "stands": stands(session.simulation.system),
             "flags": flags(session),
             "compiled": session.simulation.system.is_compiled(session.simulation.study.engine),
         }
@@ -215,6 +216,7 @@ class Questions:
             refused=refused,
             measure=measure,
             at=at if shares else None,
+            standing={str(key): float(own) for key, own in (asked.get("standing") or {}).items()},
             factors=FACTORS if factor is None else (float(factor),),
         )
 

@@ -46,7 +46,18 @@ TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".html": "text/htm
 PAGE: Final = "tol3d.apps.workbench.page"
 REPORT: Final = "tol3d.report.html"
 SCRIPTS: Final = (
-    *("analyses.js", "app.js", "ask.js", "card.js", "editor.js", "jobs.js", "sliders.js", "stage.js", "text.js"),
+    *(
+        "analyses.js",
+        "app.js",
+        "ask.js",
+        "card.js",
+        "editor.js",
+        "jobs.js",
+        "sliders.js",
+        "stage.js",
+        "stands.js",
+        "text.js",
+    ),
 )
 FILES: Final = {**dict.fromkeys((*SCRIPTS, "app.css", "jobs.css"), PAGE), "style.css": REPORT, "viewer.js": REPORT}
 STALE: Final = 409

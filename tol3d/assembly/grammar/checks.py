@@ -160,6 +160,15 @@ def read_at(scene: Scene, name: str) -> tuple[str, ...]:
     return tuple(paths_of(scene).get(pose, (pose,)))
 
 
+def read_in(scene: Scene, pose: str) -> Mapping[str, Any]:
+    """The measures of a scene, all read in one pose."""
+    there = {"at": pose, "over": None, "take": "value"}
+    return {
+        name: spec.model_copy(update=there) if isinstance(spec, TimedSpec) else spec
+        for name, spec in scene.measures.items()
+    }
+
+
 def differences_of_two_poses(scene: Scene) -> Iterator[Problem]:
     """Differences of measures that are read in two poses, of which a trial has one at a time."""
     for name, spec in scene.of(DifferenceSpec).items():

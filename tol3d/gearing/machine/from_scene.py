@@ -79,6 +79,7 @@ def machine_system(scene: Scene) -> MachineSystem:
         off_shafts=tuple(_off_shafts(scene, bores)),
         drives=tuple(drives_of(scene, model)),
         up=_up(scene),
+        parts=parts,
     )
     refuse_counted_twice(scene, made)
     _refuse_turned_bores(scene, made)

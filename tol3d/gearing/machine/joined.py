@@ -22,6 +22,7 @@ from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.gearing.system import GearSystem
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.kept import KnownRows, kept
+from tol3d.scene import Scene
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.measure import Measure
 from tol3d.study.system.stated import component_slices, mean_deviations, stated
@@ -73,6 +74,8 @@ class Joined:
         off_shafts: warnings of bores beyond the ends of their shafts.
         drives: joints that trains turn.
         up: unit vector to the top of a picture, against gravity if there is some.
+        parts: the scene of the assembly alone, from which it is made in other poses.
+        alone: the pose in which parts alone are shown; "" for all that there is.
     """
 
     name: str
@@ -85,6 +88,8 @@ class Joined:
     off_shafts: tuple[str, ...] = ()
     drives: tuple[JointDrive, ...] = ()
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    parts: Scene | None = None
+    alone: str = ""
 
     @property
     def drawn(self) -> AssemblySystem:

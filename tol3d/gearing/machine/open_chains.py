@@ -13,7 +13,7 @@ import numpy as np
 from tol3d.assembly.from_scene.datums import frame_name
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.setting import Setting
-from tol3d.assembly.grammar.checks import pose_names
+from tol3d.assembly.grammar.checks import pose_names, read_in
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.errors import InputError
@@ -29,7 +29,9 @@ from tol3d.statistics.distributions.base import Distribution, Place
 from tol3d.statistics.distributions.constant import Constant
 from tol3d.study.system.draw import Scalar
 from tol3d.study.system.plain import UNITS, PlainContributor
+from tol3d.study.system.posable import AS_SET
 from tol3d.study.system.positions import Positions
+from tol3d.units import Quantity
 
 SAME_LINE: Final = 1e-6
 """mm, and sine of an angle; both axes of a joint are one to within this where parts are placed."""
@@ -138,8 +140,8 @@ def _behind(joints: Sequence[Joint], joint: Joint) -> set[str]:
 
 
 def free_joints(scene: Scene, spec: OpenChainSpec) -> tuple[str, ...]:
-    """Joints with play that nothing loads in one of the poses."""
-    sides = [loaded_sides(scene, spec, pose) for pose in spec.poses]
+    """Joints with play that nothing loads in one of the poses that are stated."""
+    sides = [loaded_sides(scene, spec, pose) for pose in spec.poses if pose != AS_SET]
     trains = (name for name, own in spec.joints.items() if own.train is not None)
     return tuple(name for name in trains if any(side[name] == 0 for side in sides))
 
@@ -227,6 +229,21 @@ def drives_of(scene: Scene, model: Model) -> Iterator[JointDrive]:
             }
             its = {pose: found[joint] for pose, found in sides.items()}
             yield JointDrive(joint, turn_name(name, joint), flank_name(joint), readings, its)
+
+
+def with_inputs(scene: Scene, inputs: Mapping[str, float]) -> Scene:
+    """The scene with one more pose of its chains, AS_SET, in which all measures are read.
+
+    Args:
+        scene: of an assembly.
+        inputs: of joints [deg]; others stand as in the first pose of their chain.
+    """
+    moves = dict(scene.moves)
+    for name, spec in scene.of(OpenChainSpec).items():
+        first = next(iter(spec.poses.values()))
+        own = {joint: Quantity(inputs[joint], "deg") if joint in inputs else first[joint] for joint in spec.joints}
+        moves[name] = spec.model_copy(update={"poses": {**spec.poses, AS_SET: own}})
+    return scene.model_copy(update={"moves": moves, "measures": read_in(scene, AS_SET)})
 
 
 def reading_at(model: Model, train: str, joint: str, angle: float) -> Measure:

@@ -1,21 +1,23 @@
 """A machine as a study sees it: the gears' system and the assembly's, joined at bores and at joints."""
 
+import math
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.prepared import reader_of
 from tol3d.assembly.posed import has_loops
-from tol3d.assembly.system import AssemblySystem, ClearanceSystem
+from tol3d.assembly.system import AssemblySystem, ClearanceSystem, assembly_system
 from tol3d.assembly.zones import laws_told
 from tol3d.gearing.machine.closed_form import closed_form, with_joints
+from tol3d.gearing.machine.grammar.open_chain import OpenChainSpec
 from tol3d.gearing.machine.joined import Joined, is_hidden
 from tol3d.gearing.machine.methods import MachineMethod, WorstMeasure
-from tol3d.gearing.machine.open_chains import HALF, JointDrive
+from tol3d.gearing.machine.open_chains import HALF, JointDrive, loaded_sides, reading_at, with_inputs
 from tol3d.gearing.machine.regressors import parts_by_links, regress_bores, with_displacements
 from tol3d.gearing.machine.statuses import STATUSES, WITH_CLEARANCES, WITH_LOOPS
 from tol3d.gearing.model.measure import Measure as GearMeasure
@@ -32,11 +34,19 @@ from tol3d.study.system.measure import Measure
 from tol3d.study.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
 from tol3d.study.system.outcome import Statuses
 from tol3d.study.system.pooled import PooledTerms
+from tol3d.study.system.posable import AS_SET, Coordinate
 from tol3d.study.system.positions import Positions
 from tol3d.study.system.stated import component_slices
 from tol3d.study.system.system import Columns, KeyPath, Published, StreamKey
 from tol3d.study.system.trials import Trials
 from tol3d.study.trials.simulation import Simulation
+
+HALF_TURN: Final = 180.0  # deg
+
+
+def _inputs(spec: OpenChainSpec, joint: str) -> Mapping[str, float]:
+    """Inputs of a joint by pose [deg]."""
+    return {pose: math.degrees(own[joint].internal) for pose, own in spec.poses.items()}
 
 
 def _joined(every: Sequence[Mapping[str, Array]]) -> Sequence[str]:
@@ -142,6 +152,53 @@ class MachineSystem(Joined):
     def in_pose(self, trials: Trials, pose: str) -> Array:
         """Deviations (trials, columns) of the assembly as the exact method has them in a pose, its joints turned."""
         return MachineMethod(self, self.gears.method(EXACT, {}), exact=True).in_pose(trials, pose)
+
+    # other poses ------------------------------------------------------------------------------------
+
+    @property
+    def _chains(self) -> Mapping[str, OpenChainSpec]:
+        return self.parts.of(OpenChainSpec) if self.parts is not None else {}
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """See Posable: the inputs of joints, which go half a turn to either side."""
+        return tuple(
+            Coordinate(joint, -HALF_TURN, HALF_TURN, "deg", _inputs(spec, joint))
+            for spec in self._chains.values()
+            for joint in spec.joints
+        )
+
+    def standing(self, values: Mapping[str, float], measures: Sequence[str]) -> "MachineSystem":
+        """See Posable: trains turn the joints by their play where these stand; only parts are measured."""
+        assert self.parts is not None
+        first = next(iter(self.poses))
+        parts, drawn = with_inputs(self.parts, values), component_slices(self.drawn)
+        posed = assembly_system(parts, AS_SET)
+        drives = []
+        for own in self.drives:
+            spec = next(spec for spec in parts.of(OpenChainSpec).values() if own.joint in spec.joints)
+            train = spec.joints[own.joint].train
+            assert train is not None
+            angle = spec.poses[AS_SET][own.joint].internal
+            reading = reading_at(self.gears.model, train, own.joint, angle)
+            side = loaded_sides(parts, spec, AS_SET)[own.joint] or (0 if own.flank in drawn else 1)
+            drives.append(replace(own, readings={**own.readings, AS_SET: reading}, sides={**own.sides, AS_SET: side}))
+        read = tuple(
+            replace(measure, sizes=((AS_SET, measure.sizes[0][1]),)) if isinstance(measure, WorstMeasure) else measure
+            for measure in self.measures
+            if measure.name in measures
+        )
+        poses = {first: replace(self.drawn, measures=()), AS_SET: posed}
+        return replace(self, poses=poses, drives=tuple(drives), measures=read, alone=AS_SET)
+
+    def shown_in(self, pose: str) -> "MachineSystem":
+        """See Posable: without the gears, whose teeth would have to be seated."""
+        return replace(self, alone=pose) if pose in self.poses else self
+
+    @property
+    def shown_poses(self) -> Mapping[str, AssemblySystem]:
+        """The poses in which its parts are shown."""
+        return {self.alone: self.poses[self.alone]} if self.alone else self.poses
 
     # its methods --------------------------------------------------------------------------------------
 

@@ -59,6 +59,7 @@ export async function open(name) {
   $("tree").innerHTML = found.tree;
   $("trials").placeholder = found.trials;
   app.positions = found.positions;
+  app.stands = found.stands;
   app.flags = found.flags;
   $("measure").replaceChildren(...found.measures.map((own) => new Option(own.name, own.name)));
   const names = found.measures.map((own) => own.name);

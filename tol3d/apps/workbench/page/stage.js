@@ -1,30 +1,32 @@
 // The assembly in 3D.
 import { $, app, ask } from "./ask.js";
+import { seen, standing, stands } from "./stands.js";
 import { goTo } from "./text.js";
 
 const STEPS = 200; // of a slider of positions
 const MANY = 4; // sliders that are shown when they are asked for
-let view = null, flying = false, waiting = null, known = {}, chosen = null, scene = "", measure = "";
+let view = null, running = null, waiting = null, known = {}, chosen = null, scene = "", measure = "";
 
-// One question under way, the latest wish wins. While a slider is held, a build is asked for with one factor alone.
-async function stage(held = false) {
-  if (flying) {
-    waiting = { held: held === true };
-    return;
-  }
-  flying = true;
+// One question under way, the latest wish wins; a promise of its picture. While a slider is held, a build is asked for
+// with one factor alone.
+export function stage(held = false) {
+  if (running) waiting = { held: held === true };
+  else running = drawn(held === true).finally(() => { running = null; });
+  return running;
+}
+
+async function drawn(held) {
   const begun = setTimeout(() => ($("stage-words").textContent = "building …"), 150);
   try {
-    await show(wish(held === true));
+    await show(wish(held));
   } catch (error) {
     $("stage-words").textContent = error.message;
   }
   clearTimeout(begun);
-  flying = false;
   if (waiting) {
     const next = waiting;
     waiting = null;
-    await stage(next.held);
+    await drawn(next.held);
   }
 }
 
@@ -33,7 +35,7 @@ function wish(held) {
   return {
     ...(which === "trial" ? { trial: Number($("trial").value) || 0 } : { builds: which === "nominal" ? [] : [which] }),
     ...(held && { factor: Number($("factor").dataset.asked ?? 1) }),
-    positions: positions(), world: $("world").value, known,
+    positions: positions(), standing: standing(), world: $("world").value, known,
   };
 }
 
@@ -53,6 +55,7 @@ async function show(asked) {
   known = { collection: told.collection, meshes: told.meshes };
   parts(told.parts);
   worlds(told.worlds);
+  seen(told.world);
   view.flags(app.flags ?? []);
   measure = app.measure;
   view.measure(measure);
@@ -190,6 +193,7 @@ window.addEventListener("tol3d-scene", () => {
   chosen = null;
   known = {};
   sliders();
+  stands();
   stage();
 });
 window.addEventListener("tol3d-card", () => {

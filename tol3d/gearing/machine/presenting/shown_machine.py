@@ -9,16 +9,18 @@ import numpy as np
 
 from tol3d.assembly.presenting.shown_assembly import RIGID, Placed, bodies, placed_in
 from tol3d.assembly.presenting.symbols import unnamed
-from tol3d.errors import RunError
+from tol3d.errors import InputError, RunError
+from tol3d.gearing.machine.methods import WorstMeasure
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.presenting.gear_display import GearDisplay
-from tol3d.gearing.shown.display import seated_build
+from tol3d.gearing.shown.display import require_factor, seated_build
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import World
 from tol3d.report.motion import Motion
 from tol3d.report.presenter import View
 from tol3d.study.results.replaying import Replay
 from tol3d.study.system.stated import magnified
+from tol3d.study.system.trials import Trials
 
 COLOURS: Final = ("#9AA7B4", "#BFA58E", "#9DB5A6", "#B4A5BE")
 """Colours of housings and other parts: greyer than those of shafts and their gears."""
@@ -33,12 +35,14 @@ class ShownMachine:
         system: whose build it is.
         placed: the parts around them in the first pose, in their own world.
         poses: the parts in every pose, where there are some.
+        magnify: factor of the deviations of the parts in them.
     """
 
     gears: GearDisplay
     system: MachineSystem
     placed: Placed
     poses: Mapping[str, Placed] = field(default_factory=dict)
+    magnify: float = 1.0
 
     @property
     def label(self) -> str:
@@ -47,24 +51,20 @@ class ShownMachine:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """See Display."""
-        return (*self.gears.notes, *([RIGID] if self.placed.has_solids else []))
+        """See Display: beyond what teeth allow parts in poses are magnified alone."""
+        rigid = [RIGID] if self.placed.has_solids else []
+        if self.magnify == self.gears.build.magnify:
+            return (*self.gears.notes, *rigid)
+        return (
+            f"deviations magnified {self.magnify:g} times",
+            *(f"of the gears by themselves: {note}" for note in self.gears.notes),
+            *rigid,
+        )
 
     @cached_property
     def worlds(self) -> tuple[World, ...]:
         """The parts in every pose; then the worlds of the gears, each with the parts around them."""
-        up = self.system.up
-        posed = (
-            World(
-                pose,
-                bodies(own, COLOURS),
-                points=own.points,
-                up=up,
-                features=own.features,
-                measured=own.measured,
-            )
-            for pose, own in self.poses.items()
-        )
+        posed = (_posed(self.system, pose, own, self.magnify) for pose, own in self.poses.items())
         return (*posed, *(self._with_parts(world) for world in self.gears.worlds))
 
     def _with_parts(self, world: World) -> World:
@@ -109,20 +109,87 @@ class ShownMachine:
         return View(notes=unnamed(self.placed.assembly))
 
 
-def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine:
-    """A build that was replayed, its deviations magnified as far as the teeth allow.
+@dataclass(frozen=True, eq=False)
+class ShownParts:
+    """Implements Display: the parts of a machine in one pose, without its gears.
+
+    Args:
+        label, notes: see Display.
+        world: of the parts.
+    """
+
+    label: str
+    notes: tuple[str, ...]
+    world: World
+
+    @property
+    def worlds(self) -> tuple[World, ...]:
+        """See Display."""
+        return (self.world,)
+
+    def view(self, close_up: str | None) -> View:
+        """See Display."""
+        if close_up is not None:
+            raise InputError(f"nothing of parts in a pose is shown close up, not {close_up}")
+        return View()
+
+
+def _posed(system: MachineSystem, pose: str, placed: Placed, magnify: float) -> World:
+    """The parts in a pose; a largest error is read there as its size in that pose."""
+    measured = dict(placed.measured)
+    for measure in system.measures:
+        own = dict(measure.sizes).get(pose) if isinstance(measure, WorstMeasure) else None
+        if own in measured:
+            measured[measure.name] = measured[own]
+    return World(
+        pose,
+        bodies(placed, COLOURS),
+        points=placed.points,
+        up=system.up,
+        features=placed.features,
+        measured=measured,
+        magnify=magnify,
+    )
+
+
+def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine | ShownParts:
+    """A build that was replayed, its deviations magnified, in the worlds of gears as far as the teeth allow.
 
     Raises:
         InputError, RunError: it cannot be shown.
     """
-    build = seated_build(seen, label, magnify=magnify)
+    require_factor(magnify)
     system = seen.simulation.system
     assert isinstance(system, MachineSystem)
+    if system.alone:
+        parts = _in_poses(seen, label, magnify)[system.alone]
+        notes = (f"deviations magnified {magnify:g} times",) if magnify != 1.0 else ()
+        rigid = (RIGID,) if parts.has_solids else ()
+        return ShownParts(label, (*notes, *rigid), _posed(system, system.alone, parts, magnify))
+    build = seated_build(seen, label, magnify=magnify)
     trials = seen.trials if build.magnify == 1.0 else magnified(system, seen.trials, build.magnify)
-    poses = {}
-    for pose, own in system.poses.items():
-        placed = placed_in(own.assembly, system.in_pose(trials.part(0, 1), pose))
+    if "" in system.poses:
+        placed = placed_in(system.drawn.assembly, system.in_pose(trials.part(0, 1), ""))
         if placed is None:
             raise RunError(f"{label}: cannot be shown: {seen.status}")
-        poses[pose] = placed
-    return ShownMachine(GearDisplay(build), system, next(iter(poses.values())), poses if "" not in poses else {})
+        return ShownMachine(GearDisplay(build), system, placed)
+    poses = _in_poses(seen, label, magnify)
+    around = placed_in(system.drawn.assembly, system.in_pose(trials.part(0, 1), next(iter(poses))))
+    return ShownMachine(GearDisplay(build), system, around or next(iter(poses.values())), poses, magnify)
+
+
+def _in_poses(seen: Replay, label: str, magnify: float) -> Mapping[str, Placed]:
+    """The parts of a build in all poses, deviations and the turns of joints magnified.
+
+    Raises:
+        RunError: they cannot be placed.
+    """
+    system, found = seen.simulation.system, dict[str, Placed]()
+    assert isinstance(system, MachineSystem)
+    for pose, own in system.shown_poses.items():
+        deviations = Trials(system.in_pose(seen.trials.part(0, 1), pose), {})
+        placed = placed_in(own.assembly, magnified(own, deviations, magnify).deviations)
+        if placed is None:
+            raise RunError(f"{label}: cannot be shown: {seen.status}")
+        found[pose] = placed
+    return found
