@@ -346,6 +346,29 @@ def test_stages_of_a_breakdown_contain_the_shafts_that_they_drive(tmp_path: Path
     assert np.subtract(stages[1], stages[0]) == pytest.approx(wanted, abs=2e-9)
 
 
+def test_a_tip_moves_by_what_the_shafts_slide_over_a_swing_too(tmp_path: Path) -> None:
+    """At 200 mm from the axis; the error of a swing is 0 where the load is on its first side."""
+    gears = {"A": Helical("one", 21, 1.5, math.radians(23.0), 1), "B": Helical("two", 46, 1.5, math.radians(23.0), -1)}
+    path, found = tmp_path / "chain.yaml", []
+    for size in (0.0, 80.0):
+        chain(gears, {"first": ("A", "B")}, plays(two=size), tmp_path)
+        text = path.read_text().replace(
+            "tolerances:", "  arm: {kind: arm, shaft: two, points: {tip: [0 mm, 200 mm, 0 mm]}}\ntolerances:"
+        )
+        text = text.replace("output: two}", "output: two, gravity: [0, -1, 0]}")
+        tip = "of: train, arm: arm, point: tip"
+        swing = f"error: {{kind: tip_error, {tip}, start: -40 deg, end: 40 deg, positions: 5}}"
+        path.write_text(text.replace("study:", f"  tip: {{kind: tip_displacement, {tip}}}\n  {swing}\nstudy:"))
+        model = model_of_scene(path)
+        trials = drawn_trials(model, 1, 0, 1)
+        answers = GeometricMethod(model, exact_engine(model)).answers(trials, model.measures)
+        found.append(answers.values)
+    turned = 0.08 * math.tan(gears["B"].helix) / gears["B"].radius
+    assert found[1]["tip"][0, 0] - found[0]["tip"][0, 0] == pytest.approx(200 * turned, rel=1e-5)  # the chord's
+    jumps = found[1]["error"][0] - found[0]["error"][0]
+    assert sorted(set(np.round(jumps / (200 * turned), 4))) == [0.0, 1.0]
+
+
 def test_a_reducer_takes_no_thrust(tmp_path: Path) -> None:
     """A shaft between a mesh and a bought reducer slides as an end shaft does."""
     gears = {"A": Helical("one", 21, 1.5, math.radians(23.0), 1), "B": Helical("two", 46, 1.5, math.radians(23.0), -1)}
@@ -417,6 +440,31 @@ def test_axial_play_is_of_shafts(of: str, words: str, tmp_path: Path) -> None:
     path.write_text(text.replace("kind: axial_play, of: two", f"kind: axial_play, of: {of}"))
     with pytest.raises(SceneError, match=re.escape(words)):
         model_of_scene(path)
+
+
+def test_a_gear_without_a_shaft_slides_as_its_own(tmp_path: Path) -> None:
+    text = """\
+scene: pair
+parts:
+  a: {kind: helical_gear, teeth: 24, module: 2 mm, helix_angle: 15 deg, hand: right, face_width: 20 mm}
+  b: {kind: helical_gear, teeth: 47, module: 2 mm, helix_angle: 15 deg, hand: left, face_width: 20 mm}
+  bearing: {kind: bearing, shaft: a}
+tolerances:
+  play: {kind: axial_play, of: bearing, distribution: {kind: constant, value: 50 um}}
+  other: {kind: axial_play, of: b, distribution: {kind: constant, value: 30 um}}
+moves:
+  m: {kind: mesh, driver: a, driven: b, centre_distance: 73.6 mm}
+measures:
+  lost: {kind: angular_backlash, of: m, over: {at: 0 deg}}
+study: {trials: 10, seed: 1}
+"""
+    (path := tmp_path / "pair.yaml").write_text(text)
+    sliding = lost(model_of_scene(path))
+    path.write_text(text.replace("50 um", "0 um").replace("30 um", "0 um"))
+    still = lost(model_of_scene(path))
+    beta = math.radians(15.0)
+    wanted = 0.08 * math.tan(beta) / (47 / math.cos(beta))
+    assert np.subtract(sliding, still) == pytest.approx([wanted] * 2, abs=1e-12)
 
 
 def test_axial_play_of_bevel_gears_is_refused(tmp_path: Path) -> None:
