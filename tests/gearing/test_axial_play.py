@@ -22,13 +22,14 @@ from oracles.screw_chain import Helical, Meshing, turn_between
 from tol3d.errors import SceneError
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
-from tol3d.gearing.methods.analytic import AnalyticMethod
+from tol3d.gearing.methods.analytic import AnalyticMethod, analytic_play
 from tol3d.gearing.methods.geometric import GeometricMethod
-from tol3d.gearing.model import AxisOffset, LostMotion, Model, Reading
+from tol3d.gearing.model import AxisOffset, LostMotion, Model, Reading, model_from_scene
 from tol3d.gearing.model.measure import Stage
 from tol3d.gearing.raceways import DeepGroove, ObliqueContact
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import closed_form, stack_of
+from tol3d.simulate import load
 from tol3d.study.system.trials import Trials
 
 ARCMIN = 10800 / math.pi  # in a radian
@@ -69,7 +70,7 @@ def scene_lines(
     """Lines of such a scene."""
     shafts = dict.fromkeys(gear.shaft for gear in gears.values())
     lines = ["scene: chain", "parts:", *(f"  {name}: {helical(gear)}" for name, gear in gears.items())]
-    at = {"C": 30.0, "E": 60.0, "F": 60.0}  # along their shafts; a mesh puts faces side by side
+    at = {"C": 30.0, "E": 60.0, "F": 60.0, "X": 30.0, "Y": 30.0}  # along their shafts; a mesh puts faces side by side
     for shaft in shafts:
         own = (
             f"{name}: {{facing: {FACING[gear.sense]}, at: {at.get(name, 0.0)} mm}}"
@@ -794,10 +795,153 @@ def test_a_shaft_takes_gears_that_face_either_way_along(senses: tuple[int, int],
         assert aside[0] - aside[1] == pytest.approx(wanted, abs=1e-15)
 
 
-def test_axial_play_between_parallel_load_paths_is_refused(tmp_path: Path) -> None:
-    play = "  play: {kind: axial_play, of: two, distribution: {kind: constant, value: 30 um}}"
-    with pytest.raises(SceneError, match=r"play\.of: expected a shaft in one load path, got 'two', at which"):
-        herringbone(play, tmp_path)
+def sliding_text(sizes: Mapping[str, float]) -> str:
+    """Axial plays of shafts [mm]."""
+    return "\n".join(sliding(shaft, f"{size} mm").replace("along", f"{shaft} along") for shaft, size in sizes.items())
+
+
+def test_a_floating_herringbone_turns_by_the_mean_of_its_halves_and_a_blocked_one_by_their_intersection(
+    tmp_path: Path,
+) -> None:
+    """Halves of 26.0 and 24.4 um on the lead; a small float lies between both."""
+    for size in (0.0, 0.01, 1.0):
+        model, gears = herringbone(sliding_text({"two": size} if size else {}), tmp_path)
+        first, second = (mesh.play / mesh.driven.radius for mesh in arcs(model, gears))
+        low, high = turn_between(arcs(model, gears), "one", "two", {"two": (-size / 2, size / 2)})
+        assert lost(model) == pytest.approx((high - low,) * 2, abs=SOLVED)
+        if size == 1.0:
+            assert high - low == pytest.approx((first + second) / 2, abs=SOLVED)
+        elif not size:
+            assert high - low == pytest.approx(min(first, second), abs=SOLVED)
+        else:
+            assert min(first, second) + 1e-5 < high - low < (first + second) / 2 - 1e-5
+
+
+@pytest.mark.parametrize("other", [1, -1])
+@pytest.mark.parametrize("shift", [0.0, 0.03])
+def test_halves_that_lie_apart_float_to_where_both_let_them_turn(other: int, shift: float, tmp_path: Path) -> None:
+    """Both shafts slide, one of them lies elsewhere; equal hands leave the float what one mesh does of it."""
+    sizes = {"one": 0.012, "two": 0.02}
+    place = f"  shift: {{kind: axial_shift, of: one, distribution: {{kind: constant, value: {shift} mm}}}}"
+    model, gears = herringbone(f"{place}\n{sliding_text(sizes)}", tmp_path, other)
+    axial = {"one": (shift - 0.006, shift + 0.006), "two": (-0.01, 0.01)}
+    low, high = turn_between(arcs(model, gears), "one", "two", axial)
+    assert lost(model) == pytest.approx((high - low,) * 2, abs=SOLVED)
+
+
+def split(
+    sizes: Mapping[str, float], hands: tuple[int, int], folder: Path, extra: str = ""
+) -> tuple[Model, dict[str, Helical]]:
+    """A stage before and one behind a split: a sun drives two lay shafts, whose pinions drive a bull gear.
+
+    The pinions look backward; left and right differ by the thickness of their teeth.
+    """
+    beta, gamma = math.radians(20.0), math.radians(12.0)
+    gears = {
+        "P": Helical("motor", 23, 1.5, beta, 1),
+        "Q": Helical("sun", 41, 1.5, beta, -1),
+        "S": Helical("sun", 20, 2.0, gamma, hands[0]),
+        "U": Helical("left", 44, 2.0, gamma, -hands[0]),
+        "V": Helical("right", 44, 2.0, gamma, -hands[0]),
+        "X": Helical("left", 20, 2.0, gamma, hands[1], -1),
+        "Y": Helical("right", 20, 2.0, gamma, hands[1], -1),
+        "Z": Helical("bull", 44, 2.0, gamma, -hands[1]),
+        "R": Helical("bull", 25, 1.5, beta, -1),
+        "T": Helical("end", 36, 1.5, beta, 1),
+    }
+    meshes = {
+        "first": ("P", "Q"), "left fast": ("S", "U"), "right fast": ("S", "V"), "left slow": ("X", "Z"),
+        "right slow": ("Y", "Z"), "last": ("R", "T"),
+    }  # fmt: skip
+    turns = {"right fast": 180.0, "left fast": 0.0, "left slow": 180.0, "right slow": 180.0}
+    thin = [
+        f"  thin {name}: {{kind: tooth_thickness, of: {name}, distribution: {{kind: constant, value: {-by} um}}}}"
+        for name, by in THINNER.items()
+    ]
+    lines = scene_lines(gears, meshes, "\n".join([sliding_text(sizes), *thin, extra]), azimuths=turns)
+    (path := folder / "split.yaml").write_text("\n".join(line for line in lines if line))
+    return model_from_scene(load(path)), gears  # such as bind at their means, too
+
+
+THINNER = {"P": 20.0, "U": 30.0, "V": 45.0, "X": 40.0, "Y": 25.0, "T": 30.0}  # um, of the arcs
+
+
+def split_arcs(model: Model, gears: Mapping[str, Helical]) -> list[Meshing]:
+    """The meshes of a split train with the plays of their teeth."""
+    of = {(gears[mesh.driver], gears[mesh.driven]): (mesh.driver, mesh.driven) for mesh in model.meshes}
+    found = []
+    for mesh in arcs(model, gears, 0.0):
+        thinner = sum(THINNER.get(name, 0.0) for name in of[mesh.driver, mesh.driven]) / 1000
+        found.append(replace(mesh, play=mesh.play + thinner / math.cos(mesh.driver.helix)))
+    return found
+
+
+SPLIT = {"motor": 0.02, "sun": 0.05, "left": 0.03, "right": 0.07, "bull": 0.04, "end": 0.06}
+
+
+@pytest.mark.parametrize("hands", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+@pytest.mark.parametrize("sliding_shafts", [("left",), ("sun",), ("bull",), ("left", "right"), tuple(SPLIT)])
+def test_a_split_train_turns_as_far_as_a_linear_programme(
+    hands: tuple[int, int], sliding_shafts: tuple[str, ...], tmp_path: Path
+) -> None:
+    sizes = {shaft: SPLIT[shaft] for shaft in sliding_shafts}
+    model, gears = split(sizes, hands, tmp_path)
+    axial = {shaft: (-size / 2, size / 2) for shaft, size in sizes.items()}
+    low, high = turn_between(split_arcs(model, gears), "motor", "end", axial)
+    assert lost(model) == pytest.approx((high - low,) * 2, abs=5 * SOLVED)  # five meshes
+
+
+@pytest.mark.slow
+def test_split_trains_that_lie_apart_turn_or_bind_as_linear_programmes_do(tmp_path: Path) -> None:
+    """Random plays, and a lay shaft up to 2 mm off its place: a third of the trains cannot be assembled."""
+    rng, bound = np.random.default_rng(4), 0
+    for _ in range(150):
+        sizes = {shaft: float(rng.uniform(0.0, 0.15)) for shaft in SPLIT if rng.random() < 0.5}
+        off, hands = float(rng.uniform(-2.0, 2.0)), tuple(rng.choice([1, -1], 2).tolist())
+        place = f"  place: {{kind: mounting_face, of: right, distribution: {{kind: constant, value: {off} mm}}}}"
+        model, gears = split(sizes, (hands[0], hands[1]), tmp_path, place)
+        axial = {"right": (off, off)} | {shaft: (-size / 2, size / 2) for shaft, size in sizes.items()}
+        if "right" in sizes:
+            axial["right"] = (off - sizes["right"] / 2, off + sizes["right"] / 2)
+        play = analytic_play(model, measure_of(model, "lost"), drawn_trials(model, 1, 0, 1))
+        try:
+            low, high = turn_between(split_arcs(model, gears), "motor", "end", axial)
+        except AssertionError:
+            bound += 1
+            assert play.bound().all()
+            continue
+        assert not play.bound().any()
+        assert play.free()[0, 0] == pytest.approx(high - low, abs=5 * SOLVED)
+    assert 25 < bound < 90
+
+
+def test_slopes_of_shafts_that_float_between_load_paths_are_differences(tmp_path: Path) -> None:
+    sizes = {"one": 0.012, "two": 0.02}
+    model, _ = herringbone(sliding_text(sizes), tmp_path)
+    measure, trials = measure_of(model, "lost"), drawn_trials(model, 1, 0, 1)
+    rates = sensitivities(model, ExactEngine(model), trials, measure)[0]
+    assert closed_form(model, measure) is None
+    step = 1e-5
+    for name in ("one along", "two along", "thin"):
+        column = model.component_slices[name]
+        moved = np.repeat(trials.deviations, 2, axis=0)
+        moved[:, column] += np.array([[step], [-step]])
+        both = Trials(moved, {key: np.repeat(own, 2) for key, own in trials.positions.items()})
+        above, below = analytic_play(model, measure, both).free()[:, 0]
+        assert rates[column] == pytest.approx((above - below) / (2 * step), rel=1e-4, abs=1e-9)
+    kappa = math.tan(math.radians(25.0)) / (47 / math.cos(math.radians(25.0)))
+    assert rates[model.component_slices["one along"]] == pytest.approx(kappa)  # of the tighter half
+    assert measure.kind.sliding == {"one", "two"}
+
+
+def test_axial_play_where_load_paths_meet_in_a_network_is_refused(tmp_path: Path) -> None:
+    """Read at a lay shaft, which the other one holds too."""
+    split({}, (1, 1), tmp_path)
+    path = tmp_path / "split.yaml"
+    text = path.read_text().replace("output: end", "output: left")
+    path.write_text(text.replace("tolerances:", f"tolerances:\n{sliding('left', '30 um')}"))
+    with pytest.raises(SceneError, match=r"along\.of: expected a shaft in one load path, or in simple parallel ones"):
+        model_of_scene(path)
 
 
 # transmission error of trains ----------------------------------------------------------------------------------------
@@ -921,14 +1065,14 @@ def test_bearings_of_a_helical_gear_move_where_statics_push_them(
     pair = model.mesh("second").pair
     azimuth = sense * math.radians(33.0)  # counted in the gear's frame, which is turned about x
     loads = loads_of(gears["C"], (30.0, azimuth, pair.working_pressure_angle), places, flank == "left")
-    for name, load in zip(("low", "high"), loads, strict=True):
+    for name, pushed in zip(("low", "high"), loads, strict=True):
         effect = next(own for own in model.contributors if own.name == f"{name} play").effect
         moved = next(one for one in effect.singles if isinstance(one, AxisOffset) and one.part == "C")
         x, y, _ = moved.direction
         lever = moved.factor * np.array([x, sense * y])  # in the shaft's frame
         at, other = places if name == "low" else reversed(places)
         own = lever / ((30.0 - other) / (at - other)) / 0.5
-        assert own == pytest.approx(load[:2] / np.hypot(*load[:2]), abs=1e-12)
+        assert own == pytest.approx(pushed[:2] / np.hypot(*pushed[:2]), abs=1e-12)
 
 
 def test_the_tooth_force_of_a_helical_gear_needs_two_bearings(tmp_path: Path) -> None:
