@@ -948,7 +948,7 @@ def test_axial_play_where_load_paths_meet_in_a_network_is_refused(tmp_path: Path
 def test_more_load_paths_and_shafts_than_can_be_compared_are_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Two paths and two shafts have four bounds: either path, and both where a slide vanishes, which are the same here."""
+    """Two paths and two shafts have four bounds: either path, and both where a slide vanishes, here the same ones."""
     monkeypatch.setattr(model_slides, "MOST_MIXES", 4)
     model, _ = split({"left": 0.03, "right": 0.07}, (1, 1), tmp_path)
     (stage,) = (
