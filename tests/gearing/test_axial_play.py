@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -21,13 +22,14 @@ from oracles.screw_chain import Helical, Meshing, turn_between
 from tol3d.errors import SceneError
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
-from tol3d.gearing.methods.analytic import AnalyticMethod
+from tol3d.gearing.methods.analytic import AnalyticMethod, analytic_play
 from tol3d.gearing.methods.geometric import GeometricMethod
-from tol3d.gearing.model import AxisOffset, LostMotion, Model, Reading
+from tol3d.gearing.model import AxisOffset, LostMotion, Model, Reading, model_from_scene
 from tol3d.gearing.model.measure import Stage
 from tol3d.gearing.raceways import DeepGroove, ObliqueContact
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import closed_form, stack_of
+from tol3d.simulate import load
 from tol3d.study.system.trials import Trials
 
 ARCMIN = 10800 / math.pi  # in a radian
@@ -53,10 +55,22 @@ def chain(
     azimuths: Mapping[str, float] | None = None,
 ) -> Model:
     """A train of gears from the first mesh's driver shaft to the last one's driven shaft."""
-    azimuths = azimuths or {}
+    lines = scene_lines(gears, meshes, tolerances, measures, azimuths or {})
+    (path := folder / "chain.yaml").write_text("\n".join(line for line in lines if line))
+    return model_of_scene(path)
+
+
+def scene_lines(
+    gears: Mapping[str, Helical],
+    meshes: Mapping[str, tuple[str, str]],
+    tolerances: str,
+    measures: str = "",
+    azimuths: Mapping[str, float | str] = MappingProxyType({}),
+) -> list[str]:
+    """Lines of such a scene."""
     shafts = dict.fromkeys(gear.shaft for gear in gears.values())
     lines = ["scene: chain", "parts:", *(f"  {name}: {helical(gear)}" for name, gear in gears.items())]
-    at = {"C": 30.0, "E": 60.0, "F": 60.0}  # along their shafts; a mesh puts faces side by side
+    at = {"C": 30.0, "E": 60.0, "F": 60.0, "X": 30.0, "Y": 30.0}  # along their shafts; a mesh puts faces side by side
     for shaft in shafts:
         own = (
             f"{name}: {{facing: {FACING[gear.sense]}, at: {at.get(name, 0.0)} mm}}"
@@ -71,9 +85,12 @@ def chain(
         lines.append(f"  {name}: {{kind: mesh, driver: {driver}, driven: {driven}, {where}}}")
     first, last = (list(shafts)[k] for k in (0, -1))
     lines += [f"  train: {{kind: train, driven: {first}, output: {last}}}", "measures:"]
-    lines += ["  lost: {kind: lost_motion, of: train, over: {at: 20 deg}}", measures, "study: {trials: 10, seed: 3}"]
-    (path := folder / "chain.yaml").write_text("\n".join(line for line in lines if line))
-    return model_of_scene(path)
+    return [
+        *lines,
+        "  lost: {kind: lost_motion, of: train, over: {at: 20 deg}}",
+        measures,
+        "study: {trials: 10, seed: 3}",
+    ]
 
 
 def two_stages(hands: tuple[int, int], senses: tuple[int, int] = (1, -1)) -> dict[str, Helical]:
@@ -136,6 +153,61 @@ def test_a_train_of_two_meshes_turns_as_far_as_a_linear_programme(
     by_method = lost(model)
     assert by_method == pytest.approx((high - low, high - low), abs=SOLVED)
     assert high - low > most - least + 5e-4  # the plays turn the output by minutes
+
+
+def random_chain(rng: np.random.Generator) -> tuple[dict[str, Helical], dict[str, tuple[str, str]]]:
+    """Up to four meshes in series, idlers among them, with a branch that carries nothing; some stages are spur."""
+    gears: dict[str, Helical] = {}
+    meshes: dict[str, tuple[str, str]] = {}
+    driver, count = "", int(rng.integers(1, 5))
+    for k in range(count + 1):
+        idles = bool(meshes) and k < count and rng.random() < 0.3
+        if not idles:
+            driver = f"d{k}"
+            helix = math.radians(rng.uniform(8.0, 30.0)) if rng.random() < 0.8 else 0.0
+            hand, sense = rng.choice([1, -1], 2).tolist()
+            module = float(rng.choice([1.0, 1.5, 2.0]))
+            on = f"s{k if k < count else int(rng.integers(0, count + 1))}"  # the last one drives a branch
+            gears[driver] = Helical(on, int(rng.integers(20, 40)), module, helix, hand, sense)
+        own, driven = gears[driver], f"w{k}"
+        gears[driven] = replace(
+            own, shaft=f"s{k + 1}", teeth=int(rng.integers(22, 70)), hand=-own.hand, sense=int(rng.choice([1, -1]))
+        )
+        meshes[f"m{k}"] = (driver, driven)
+        driver = driven
+    return gears, meshes
+
+
+@pytest.mark.slow
+def test_random_trains_held_and_read_anywhere_turn_as_far_as_linear_programmes(tmp_path: Path) -> None:
+    """Two hundred trains, by the analytic method; faces lie side by side, for nothing leans."""
+    rng, tried = np.random.default_rng(11), 0
+    while tried < 200:
+        gears, meshes = random_chain(rng)
+        shafts = list(dict.fromkeys(gear.shaft for gear in gears.values()))
+        sizes = {shaft: float(rng.uniform(20.0, 120.0)) for shaft in shafts if rng.random() < 0.7}
+        held, read = rng.choice(shafts, 2, replace=False).tolist()
+        thin = "\n".join(
+            f"  thin {name}: {{kind: tooth_thickness, of: {name}, distribution: {{kind: constant, value: -50 um}}}}"
+            for name in gears
+        )
+        text = "\n".join([plays(**sizes).rpartition("\n")[0], thin])
+        apart = {name: f"{rng.uniform(0.0, 360.0):.3f}" for name in meshes}
+        lines = scene_lines(gears, meshes, text, azimuths=apart)
+        lines = [line.replace("output:", f"held: {held}, output:") for line in lines]
+        lines = [line.replace("of: train, over", f"of: train, shaft: {read}, over") for line in lines]
+        (path := tmp_path / "random.yaml").write_text("\n".join(line for line in lines if line))
+        try:
+            model = model_of_scene(path)
+        except SceneError:
+            continue  # teeth that are pointed or undercut
+        tried += 1
+        own = [replace(mesh, play=mesh.play) for mesh in arcs(model, gears, 0.0)]
+        own = [replace(m, play=m.play + sum(0.05 / math.cos(g.helix) for g in (m.driver, m.driven))) for m in own]
+        axial = {shaft: (0.0, size / 1000) for shaft, size in sizes.items()}
+        low, high = turn_between(own, held, read, axial)
+        columns = gear_columns(model, None, drawn_trials(model, 1, 0, 1))
+        assert columns["analytic:lost"][0] / ARCMIN == pytest.approx(high - low, rel=1e-7, abs=SOLVED), path.read_text()
 
 
 @pytest.mark.parametrize(
@@ -346,6 +418,29 @@ def test_stages_of_a_breakdown_contain_the_shafts_that_they_drive(tmp_path: Path
     assert np.subtract(stages[1], stages[0]) == pytest.approx(wanted, abs=2e-9)
 
 
+def test_a_tip_moves_by_what_the_shafts_slide_over_a_swing_too(tmp_path: Path) -> None:
+    """At 200 mm from the axis; the error of a swing is 0 where the load is on its first side."""
+    gears = {"A": Helical("one", 21, 1.5, math.radians(23.0), 1), "B": Helical("two", 46, 1.5, math.radians(23.0), -1)}
+    path, found = tmp_path / "chain.yaml", []
+    for size in (0.0, 80.0):
+        chain(gears, {"first": ("A", "B")}, plays(two=size), tmp_path)
+        text = path.read_text().replace(
+            "tolerances:", "  arm: {kind: arm, shaft: two, points: {tip: [0 mm, 200 mm, 0 mm]}}\ntolerances:"
+        )
+        text = text.replace("output: two}", "output: two, gravity: [0, -1, 0]}")
+        tip = "of: train, arm: arm, point: tip"
+        swing = f"error: {{kind: tip_error, {tip}, start: -40 deg, end: 40 deg, positions: 5}}"
+        path.write_text(text.replace("study:", f"  tip: {{kind: tip_displacement, {tip}}}\n  {swing}\nstudy:"))
+        model = model_of_scene(path)
+        trials = drawn_trials(model, 1, 0, 1)
+        answers = GeometricMethod(model, exact_engine(model)).answers(trials, model.measures)
+        found.append(answers.values)
+    turned = 0.08 * math.tan(gears["B"].helix) / gears["B"].radius
+    assert found[1]["tip"][0, 0] - found[0]["tip"][0, 0] == pytest.approx(200 * turned, rel=1e-5)  # the chord's
+    jumps = found[1]["error"][0] - found[0]["error"][0]
+    assert sorted(set(np.round(jumps / (200 * turned), 4))) == [0.0, 1.0]
+
+
 def test_a_reducer_takes_no_thrust(tmp_path: Path) -> None:
     """A shaft between a mesh and a bought reducer slides as an end shaft does."""
     gears = {"A": Helical("one", 21, 1.5, math.radians(23.0), 1), "B": Helical("two", 46, 1.5, math.radians(23.0), -1)}
@@ -417,6 +512,31 @@ def test_axial_play_is_of_shafts(of: str, words: str, tmp_path: Path) -> None:
     path.write_text(text.replace("kind: axial_play, of: two", f"kind: axial_play, of: {of}"))
     with pytest.raises(SceneError, match=re.escape(words)):
         model_of_scene(path)
+
+
+def test_a_gear_without_a_shaft_slides_as_its_own(tmp_path: Path) -> None:
+    text = """\
+scene: pair
+parts:
+  a: {kind: helical_gear, teeth: 24, module: 2 mm, helix_angle: 15 deg, hand: right, face_width: 20 mm}
+  b: {kind: helical_gear, teeth: 47, module: 2 mm, helix_angle: 15 deg, hand: left, face_width: 20 mm}
+  bearing: {kind: bearing, shaft: a}
+tolerances:
+  play: {kind: axial_play, of: bearing, distribution: {kind: constant, value: 50 um}}
+  other: {kind: axial_play, of: b, distribution: {kind: constant, value: 30 um}}
+moves:
+  m: {kind: mesh, driver: a, driven: b, centre_distance: 73.6 mm}
+measures:
+  lost: {kind: angular_backlash, of: m, over: {at: 0 deg}}
+study: {trials: 10, seed: 1}
+"""
+    (path := tmp_path / "pair.yaml").write_text(text)
+    sliding = lost(model_of_scene(path))
+    path.write_text(text.replace("50 um", "0 um").replace("30 um", "0 um"))
+    still = lost(model_of_scene(path))
+    beta = math.radians(15.0)
+    wanted = 0.08 * math.tan(beta) / (47 / math.cos(beta))
+    assert np.subtract(sliding, still) == pytest.approx([wanted] * 2, abs=1e-12)
 
 
 def test_axial_play_of_bevel_gears_is_refused(tmp_path: Path) -> None:
@@ -675,10 +795,153 @@ def test_a_shaft_takes_gears_that_face_either_way_along(senses: tuple[int, int],
         assert aside[0] - aside[1] == pytest.approx(wanted, abs=1e-15)
 
 
-def test_axial_play_between_parallel_load_paths_is_refused(tmp_path: Path) -> None:
-    play = "  play: {kind: axial_play, of: two, distribution: {kind: constant, value: 30 um}}"
-    with pytest.raises(SceneError, match=r"play\.of: expected a shaft in one load path, got 'two', at which"):
-        herringbone(play, tmp_path)
+def sliding_text(sizes: Mapping[str, float]) -> str:
+    """Axial plays of shafts [mm]."""
+    return "\n".join(sliding(shaft, f"{size} mm").replace("along", f"{shaft} along") for shaft, size in sizes.items())
+
+
+def test_a_floating_herringbone_turns_by_the_mean_of_its_halves_and_a_blocked_one_by_their_intersection(
+    tmp_path: Path,
+) -> None:
+    """Halves of 26.0 and 24.4 um on the lead; a small float lies between both."""
+    for size in (0.0, 0.01, 1.0):
+        model, gears = herringbone(sliding_text({"two": size} if size else {}), tmp_path)
+        first, second = (mesh.play / mesh.driven.radius for mesh in arcs(model, gears))
+        low, high = turn_between(arcs(model, gears), "one", "two", {"two": (-size / 2, size / 2)})
+        assert lost(model) == pytest.approx((high - low,) * 2, abs=SOLVED)
+        if size == 1.0:
+            assert high - low == pytest.approx((first + second) / 2, abs=SOLVED)
+        elif not size:
+            assert high - low == pytest.approx(min(first, second), abs=SOLVED)
+        else:
+            assert min(first, second) + 1e-5 < high - low < (first + second) / 2 - 1e-5
+
+
+@pytest.mark.parametrize("other", [1, -1])
+@pytest.mark.parametrize("shift", [0.0, 0.03])
+def test_halves_that_lie_apart_float_to_where_both_let_them_turn(other: int, shift: float, tmp_path: Path) -> None:
+    """Both shafts slide, one of them lies elsewhere; equal hands leave the float what one mesh does of it."""
+    sizes = {"one": 0.012, "two": 0.02}
+    place = f"  shift: {{kind: axial_shift, of: one, distribution: {{kind: constant, value: {shift} mm}}}}"
+    model, gears = herringbone(f"{place}\n{sliding_text(sizes)}", tmp_path, other)
+    axial = {"one": (shift - 0.006, shift + 0.006), "two": (-0.01, 0.01)}
+    low, high = turn_between(arcs(model, gears), "one", "two", axial)
+    assert lost(model) == pytest.approx((high - low,) * 2, abs=SOLVED)
+
+
+def split(
+    sizes: Mapping[str, float], hands: tuple[int, int], folder: Path, extra: str = ""
+) -> tuple[Model, dict[str, Helical]]:
+    """A stage before and one behind a split: a sun drives two lay shafts, whose pinions drive a bull gear.
+
+    The pinions look backward; left and right differ by the thickness of their teeth.
+    """
+    beta, gamma = math.radians(20.0), math.radians(12.0)
+    gears = {
+        "P": Helical("motor", 23, 1.5, beta, 1),
+        "Q": Helical("sun", 41, 1.5, beta, -1),
+        "S": Helical("sun", 20, 2.0, gamma, hands[0]),
+        "U": Helical("left", 44, 2.0, gamma, -hands[0]),
+        "V": Helical("right", 44, 2.0, gamma, -hands[0]),
+        "X": Helical("left", 20, 2.0, gamma, hands[1], -1),
+        "Y": Helical("right", 20, 2.0, gamma, hands[1], -1),
+        "Z": Helical("bull", 44, 2.0, gamma, -hands[1]),
+        "R": Helical("bull", 25, 1.5, beta, -1),
+        "T": Helical("end", 36, 1.5, beta, 1),
+    }
+    meshes = {
+        "first": ("P", "Q"), "left fast": ("S", "U"), "right fast": ("S", "V"), "left slow": ("X", "Z"),
+        "right slow": ("Y", "Z"), "last": ("R", "T"),
+    }  # fmt: skip
+    turns = {"right fast": 180.0, "left fast": 0.0, "left slow": 180.0, "right slow": 180.0}
+    thin = [
+        f"  thin {name}: {{kind: tooth_thickness, of: {name}, distribution: {{kind: constant, value: {-by} um}}}}"
+        for name, by in THINNER.items()
+    ]
+    lines = scene_lines(gears, meshes, "\n".join([sliding_text(sizes), *thin, extra]), azimuths=turns)
+    (path := folder / "split.yaml").write_text("\n".join(line for line in lines if line))
+    return model_from_scene(load(path)), gears  # such as bind at their means, too
+
+
+THINNER = {"P": 20.0, "U": 30.0, "V": 45.0, "X": 40.0, "Y": 25.0, "T": 30.0}  # um, of the arcs
+
+
+def split_arcs(model: Model, gears: Mapping[str, Helical]) -> list[Meshing]:
+    """The meshes of a split train with the plays of their teeth."""
+    of = {(gears[mesh.driver], gears[mesh.driven]): (mesh.driver, mesh.driven) for mesh in model.meshes}
+    found = []
+    for mesh in arcs(model, gears, 0.0):
+        thinner = sum(THINNER.get(name, 0.0) for name in of[mesh.driver, mesh.driven]) / 1000
+        found.append(replace(mesh, play=mesh.play + thinner / math.cos(mesh.driver.helix)))
+    return found
+
+
+SPLIT = {"motor": 0.02, "sun": 0.05, "left": 0.03, "right": 0.07, "bull": 0.04, "end": 0.06}
+
+
+@pytest.mark.parametrize("hands", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+@pytest.mark.parametrize("sliding_shafts", [("left",), ("sun",), ("bull",), ("left", "right"), tuple(SPLIT)])
+def test_a_split_train_turns_as_far_as_a_linear_programme(
+    hands: tuple[int, int], sliding_shafts: tuple[str, ...], tmp_path: Path
+) -> None:
+    sizes = {shaft: SPLIT[shaft] for shaft in sliding_shafts}
+    model, gears = split(sizes, hands, tmp_path)
+    axial = {shaft: (-size / 2, size / 2) for shaft, size in sizes.items()}
+    low, high = turn_between(split_arcs(model, gears), "motor", "end", axial)
+    assert lost(model) == pytest.approx((high - low,) * 2, abs=5 * SOLVED)  # five meshes
+
+
+@pytest.mark.slow
+def test_split_trains_that_lie_apart_turn_or_bind_as_linear_programmes_do(tmp_path: Path) -> None:
+    """Random plays, and a lay shaft up to 2 mm off its place: a third of the trains cannot be assembled."""
+    rng, bound = np.random.default_rng(4), 0
+    for _ in range(150):
+        sizes = {shaft: float(rng.uniform(0.0, 0.15)) for shaft in SPLIT if rng.random() < 0.5}
+        off, hands = float(rng.uniform(-2.0, 2.0)), tuple(rng.choice([1, -1], 2).tolist())
+        place = f"  place: {{kind: mounting_face, of: right, distribution: {{kind: constant, value: {off} mm}}}}"
+        model, gears = split(sizes, (hands[0], hands[1]), tmp_path, place)
+        axial = {"right": (off, off)} | {shaft: (-size / 2, size / 2) for shaft, size in sizes.items()}
+        if "right" in sizes:
+            axial["right"] = (off - sizes["right"] / 2, off + sizes["right"] / 2)
+        play = analytic_play(model, measure_of(model, "lost"), drawn_trials(model, 1, 0, 1))
+        try:
+            low, high = turn_between(split_arcs(model, gears), "motor", "end", axial)
+        except AssertionError:
+            bound += 1
+            assert play.bound().all()
+            continue
+        assert not play.bound().any()
+        assert play.free()[0, 0] == pytest.approx(high - low, abs=5 * SOLVED)
+    assert 25 < bound < 90
+
+
+def test_slopes_of_shafts_that_float_between_load_paths_are_differences(tmp_path: Path) -> None:
+    sizes = {"one": 0.012, "two": 0.02}
+    model, _ = herringbone(sliding_text(sizes), tmp_path)
+    measure, trials = measure_of(model, "lost"), drawn_trials(model, 1, 0, 1)
+    rates = sensitivities(model, ExactEngine(model), trials, measure)[0]
+    assert closed_form(model, measure) is None
+    step = 1e-5
+    for name in ("one along", "two along", "thin"):
+        column = model.component_slices[name]
+        moved = np.repeat(trials.deviations, 2, axis=0)
+        moved[:, column] += np.array([[step], [-step]])
+        both = Trials(moved, {key: np.repeat(own, 2) for key, own in trials.positions.items()})
+        above, below = analytic_play(model, measure, both).free()[:, 0]
+        assert rates[column] == pytest.approx((above - below) / (2 * step), rel=1e-4, abs=1e-9)
+    kappa = math.tan(math.radians(25.0)) / (47 / math.cos(math.radians(25.0)))
+    assert rates[model.component_slices["one along"]] == pytest.approx(kappa)  # of the tighter half
+    assert measure.kind.sliding == {"one", "two"}
+
+
+def test_axial_play_where_load_paths_meet_in_a_network_is_refused(tmp_path: Path) -> None:
+    """Read at a lay shaft, which the other one holds too."""
+    split({}, (1, 1), tmp_path)
+    path = tmp_path / "split.yaml"
+    text = path.read_text().replace("output: end", "output: left")
+    path.write_text(text.replace("tolerances:", f"tolerances:\n{sliding('left', '30 um')}"))
+    with pytest.raises(SceneError, match=r"along\.of: expected a shaft in one load path, or in simple parallel ones"):
+        model_of_scene(path)
 
 
 # transmission error of trains ----------------------------------------------------------------------------------------
@@ -802,14 +1065,14 @@ def test_bearings_of_a_helical_gear_move_where_statics_push_them(
     pair = model.mesh("second").pair
     azimuth = sense * math.radians(33.0)  # counted in the gear's frame, which is turned about x
     loads = loads_of(gears["C"], (30.0, azimuth, pair.working_pressure_angle), places, flank == "left")
-    for name, load in zip(("low", "high"), loads, strict=True):
+    for name, pushed in zip(("low", "high"), loads, strict=True):
         effect = next(own for own in model.contributors if own.name == f"{name} play").effect
         moved = next(one for one in effect.singles if isinstance(one, AxisOffset) and one.part == "C")
         x, y, _ = moved.direction
         lever = moved.factor * np.array([x, sense * y])  # in the shaft's frame
         at, other = places if name == "low" else reversed(places)
         own = lever / ((30.0 - other) / (at - other)) / 0.5
-        assert own == pytest.approx(load[:2] / np.hypot(*load[:2]), abs=1e-12)
+        assert own == pytest.approx(pushed[:2] / np.hypot(*pushed[:2]), abs=1e-12)
 
 
 def test_the_tooth_force_of_a_helical_gear_needs_two_bearings(tmp_path: Path) -> None:

@@ -111,6 +111,19 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class Mix:
+    """A bound of the turn at which load paths join, some of their shafts sliding: a vertex of the dual programme.
+
+    Args:
+        weights: of the paths; of one below 0 its other end counts.
+        slides: of the shafts, at the one where the paths join: half of it on each side.
+    """
+
+    weights: tuple[float, ...]
+    slides: tuple[Slide, ...]
+
+
+@dataclass(frozen=True)
 class ParallelStage:
     """Load paths in parallel between two shafts: the play where they join is the intersection of their plays.
 
@@ -121,6 +134,8 @@ class ParallelStage:
         paths: the stages of each load path; their factors and senses are those of the shaft where the paths join.
         sense: of the turn of the shaft that is read for a turn of the shaft where they meet, 1 or -1.
         loops: stages from a shaft back to itself, likewise, of load paths that share links; none where they do not.
+        mixes: bounds by several paths at once where shafts slide, whose weights add up to 1; else none.
+        gaps: of those that add up to 0: what lets the paths be closed.
     """
 
     link: str
@@ -131,7 +146,9 @@ class ParallelStage:
     sense: int = 1
     backlash: None = None
     loops: tuple[tuple[Stage, ...], ...] = ()
-    slides: tuple[Slide, ...] = ()  # none: see model/slides.py
+    mixes: tuple[Mix, ...] = ()
+    gaps: tuple[Mix, ...] = ()
+    slides: ClassVar[tuple[Slide, ...]] = ()
 
     @property
     def singles(self) -> tuple[Stage, ...]:
@@ -213,7 +230,8 @@ class LostMotion:
     @property
     def sliding(self) -> frozenset[str]:
         """The shafts whose axial play acts."""
-        return frozenset(slide.shaft for stage in self.stages for slide in stage.slides)
+        mixes = (mix for stage in self.stages if isinstance(stage, ParallelStage) for mix in stage.mixes)
+        return frozenset(slide.shaft for sliding in (*self.stages, *mixes) for slide in sliding.slides)
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,18 @@ hold the shaft are left out: they make it less.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
 from typing import Final
 
+import numpy as np
+
 from tol3d.gearing.model.links import Link, LoadPath, Parallel, links_of
-from tol3d.gearing.model.measure import Slide
+from tol3d.gearing.model.measure import AnyStage, Mix, ParallelStage, Slide
 from tol3d.gearing.model.model import Model
+from tol3d.gearing.model.networks import Network
 from tol3d.gearing.shafts import Mesh
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 
 SAME_LEAD: Final = 1e-9  # of a twist; gears drawn for one lead differ by the digits of their helix angles
@@ -40,6 +46,8 @@ def slides_along(model: Model, path: LoadPath) -> Mapping[str, tuple[Slide, ...]
     """Turns by the shafts of a load path, by the mesh at which each counts: at the shaft which that drives."""
     found: dict[str, tuple[Slide, ...]] = {}
     for shaft in sliding_shafts(model):
+        if any(isinstance(element, Parallel) for element in _at(path, shaft)):
+            continue  # see with_shared_slides
         meshes = [mesh for element in _at(path, shaft) for mesh in model.meshes if mesh.name == element.name]
         if not (twist := _unbalanced([_twist(model, mesh, shaft) for mesh in meshes])):
             continue
@@ -71,8 +79,81 @@ def _shafts(link: Link) -> tuple[str, ...]:
     return link.shafts if link.carrier is None else (*link.shafts, link.carrier)
 
 
+def with_shared_slides(model: Model, stages: tuple[AnyStage, ...]) -> tuple[AnyStage, ...]:
+    """The stages, those of load paths in parallel with the bounds by shafts of theirs that slide.
+
+    Path p lets the shaft where the paths join turn from low_p + a_p . s to high_p + a_p . s, s the shifts of the
+    shafts, each within half of its play on either side, and a_p by how much a shift turns that shaft. The largest turn
+    that all of them allow is the least of all vertices of the dual programme: weights w of the paths that add up to 1,
+    sum(w high) (of a weight below 0, low) + sum of c/2 |sum(w a)| over the shafts; every vertex has as many paths as
+    shafts whose sum is 0, and one more. A shaft that goes on to a mesh behind or before the paths turns that as well.
+    """
+    shafts = sliding_shafts(model)
+    return tuple(
+        _shared(model, stages, stage, shafts) if shafts and isinstance(stage, ParallelStage) else stage
+        for stage in stages
+    )
+
+
+def _shared(model: Model, stages: Sequence[AnyStage], own: ParallelStage, shafts: Sequence[str]) -> ParallelStage:
+    touched = {shaft for path in own.paths for stage in path for shaft in shafts if _screwed(model, stage, shaft)}
+    found = [shaft for shaft in shafts if shaft in touched]
+    series = {shaft: sum(_screwed(model, stage, shaft) for stage in stages if stage is not own) for shaft in found}
+    turned = np.array(
+        [
+            [sum(_screwed(model, stage, shaft) for stage in path) + series[shaft] / (own.sense * own.factor)
+             for shaft in found]
+            for path in own.paths
+        ]
+    )  # fmt: skip
+    if not found:
+        return own
+    mixes, gaps = ([_mix(weights, turned, found) for weights in _vertices(turned, total)] for total in (1.0, 0.0))
+    return replace(own, mixes=tuple(dict.fromkeys(mixes)), gaps=tuple(dict.fromkeys(gaps)))
+
+
+def _screwed(model: Model, stage: AnyStage, shaft: str) -> float:
+    """Turn of the shaft at which a stage is read per shift of another one [rad/mm]: kappa of the driven gear."""
+    if isinstance(stage, ParallelStage) or stage.backlash is None:
+        return 0.0
+    mesh = model.mesh(stage.link)
+    twist = stage.sense * stage.factor * mesh.gear(mesh.driven).twist
+    moved = 0.0
+    for gear, towards in ((mesh.driven, twist), (mesh.driver, -twist)):
+        carrier, carried = model.layout.carrying[gear]
+        moved += towards * carried.sense * (carrier == shaft)
+    return moved
+
+
+def _vertices(turned: Array, total: float) -> Iterator[Array]:
+    """Weights (paths,) with a total of which as many slides vanish as leave no freedom; of a total of 0 both signs."""
+    paths, shafts = turned.shape
+    for size in range(1 if total else 2, paths + 1):
+        for support in combinations(range(paths), size):
+            for zero in combinations(range(shafts), size - 1 if total else size - 2):
+                rows = np.vstack([np.ones(size), turned[np.ix_(support, zero)].T])
+                wanted = np.zeros(len(rows))
+                wanted[0] = total
+                if not total:
+                    rows, wanted = np.vstack([rows, np.eye(size)[:1]]), np.append(wanted, 1.0)
+                scale = np.abs(rows).max(axis=1, keepdims=True)
+                if not scale.all() or abs(np.linalg.det(rows / scale)) < SAME_LEAD:
+                    continue
+                weights = np.zeros(paths)
+                weights[list(support)] = np.linalg.solve(rows, wanted)
+                yield from (weights,) if total else (weights, -weights)
+
+
+def _mix(weights: Array, turned: Array, shafts: Sequence[str]) -> Mix:
+    """Bound by some weights; a slide that vanishes but for rounding is none."""
+    slid = np.abs(weights @ turned)
+    least = SAME_LEAD * np.abs(turned).max()
+    slides = (Slide(shaft, float(own)) for shaft, own in zip(shafts, slid, strict=True) if own > least)
+    return Mix(tuple(weights.tolist()), tuple(slides))
+
+
 def refuse_shared_thrust(scene: Scene, model: Model) -> None:
-    """Refuse helical shafts with axial play at which load paths part or join: they would share the thrust.
+    """Refuse helical shafts with axial play at which load paths meet otherwise than in parallel, or in several groups.
 
     Raises:
         SceneError: at the tolerance.
@@ -81,15 +162,19 @@ def refuse_shared_thrust(scene: Scene, model: Model) -> None:
         for shaft in filter(contributor.effect.slides, sliding_shafts(model)):
             for path in _paths(model):
                 met = _at(path, shaft)
-                helical = any(
-                    mesh.pair.pinion.twist
-                    for mesh in model.meshes
-                    if mesh.name in {link.name for link in links_of(tuple(met))}
-                )
-                if helical and (len(met) > 2 or any(isinstance(element, Parallel) for element in met)):
-                    words = f"expected a shaft in one load path, got {shaft!r}, at which several meet: "
-                    advice = "how they share its thrust is not simulated; hold it along its axis"
+                names = {link.name for link in links_of(tuple(met))}
+                helical = any(mesh.pair.pinion.twist for mesh in model.meshes if mesh.name in names)
+                parallel = [element for element in met if isinstance(element, Parallel)]
+                mixed = any(isinstance(own, Network) or _is_nested(own) for own in parallel)
+                carried = bool(parallel) and any(link.carrier for link in links_of(path))
+                if helical and (mixed or carried or len(parallel) > 1 or (not parallel and len(met) > 2)):
+                    words = f"expected a shaft in one load path, or in simple parallel ones, got {shaft!r}: how the "
+                    advice = "load paths that meet at it share its thrust is not simulated; hold it along its axis"
                     raise scene.refuse(("tolerances", contributor.name, "of"), f"{words}{advice}")
+
+
+def _is_nested(group: Parallel) -> bool:
+    return any(isinstance(element, Parallel) for path in group.paths for element in path)
 
 
 def _paths(model: Model) -> Iterator[LoadPath]:

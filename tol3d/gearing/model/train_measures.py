@@ -21,7 +21,7 @@ from tol3d.gearing.model.measure import (
 from tol3d.gearing.model.mesh_measures import Reader, measured, reader_of
 from tol3d.gearing.model.model import Model
 from tol3d.gearing.model.networks import Network, Walk
-from tol3d.gearing.model.slides import slides_along
+from tol3d.gearing.model.slides import slides_along, with_shared_slides
 from tol3d.gearing.model.trains import gravity_torque, refuse_incomparable
 from tol3d.gearing.shafts import Arm, Train
 from tol3d.scene import Scene
@@ -49,8 +49,11 @@ def lost_motion(
     path = model.layout.load_path(train.held, shaft)
     stages = tuple(_stage(model, element, (shaft, train.held), read) for element in path)
     slides = slides_along(model, path)
-    sliding = tuple(replace(stage, slides=slides[stage.link]) if stage.link in slides else stage for stage in stages)
-    return LostMotion(quantity, train.name, shaft, train.held, sliding, tip)
+    stages = tuple(
+        replace(stage, slides=slides[stage.link]) if isinstance(stage, Stage) and stage.link in slides else stage
+        for stage in stages
+    )
+    return LostMotion(quantity, train.name, shaft, train.held, with_shared_slides(model, stages), tip)
 
 
 def _stage(model: Model, element: Link | Parallel, ends: tuple[str, str], read: Reader) -> AnyStage:

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.links.stated_link import FreeTurn, middle_of
 from tol3d.gearing.model import AxialPlay, Backlash, LostMotion, Measure, Mesh, Model, Reading, TransmissionError
-from tol3d.gearing.model.measure import AnyStage, ParallelStage, Slide, Stage
+from tol3d.gearing.model.measure import AnyStage, Mix, ParallelStage, Slide, Stage
 from tol3d.gearing.play.linked import LinkLaw, link_trials
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.breakdown import Breakdown, SumTerm
@@ -30,11 +30,11 @@ from tol3d.units import ARCMIN
 
 FREE: Final = 1e-9  # rad; load paths that overlap by rounding errors do not bind each other
 
-Variable = tuple[Stage, Literal["play", "rest"]]
+Variable = tuple[Stage, Literal["play", "rest"]] | tuple[str, Literal["slide"]]
 VariableValues = Callable[[Variable], Array]
 """A stage's own play [rad], or the angle at which its driven gear rests [rad]; (trials, positions).
 
-Of a link that is no mesh the middle of its free turn stands for that angle.
+Of a link that is no mesh the middle of its free turn stands for that angle. Of a shaft that slides its axial play [mm].
 """
 
 LinearForm = Mapping[Variable, Array]
@@ -53,9 +53,11 @@ def free_form(stage: ParallelStage, flank: WorkingFlank, read: VariableValues) -
     """Play of the shaft where load paths join; below 0 they bind each other."""
     low, high = _meeting(stage, flank, read)
     free = _sum(high, _reversed(low))
-    if not stage.loops:
+    if not stage.loops and not stage.gaps:
         return free
     loops = [form for loop in stage.loops for form in _around(loop, flank, read)]
+    each = [_ends_of_path(path, flank, read) for path in stage.paths] if stage.gaps else []
+    loops += [_mixed(mix, each)[1] for mix in stage.gaps]
     lacking = [value(form, read) for form in loops]
     tightest = np.argmin(lacking, axis=0)
     binds = np.min(lacking, axis=0) < -FREE
@@ -71,11 +73,28 @@ def _around(loop: tuple[Stage, ...], flank: WorkingFlank, read: VariableValues) 
 def _meeting(stage: ParallelStage, flank: WorkingFlank, read: VariableValues) -> tuple[LinearForm, LinearForm]:
     """Both ends of the common play of all load paths."""
     each = [_ends_of_path(path, flank, read) for path in stage.paths]
+    each = [_mixed(mix, each) for mix in stage.mixes] or each
     lows, highs = [low for low, _ in each], [high for _, high in each]
     return (
         _chosen(lows, np.argmax([value(form, read) for form in lows], axis=0)),
         _chosen(highs, np.argmin([value(form, read) for form in highs], axis=0)),
     )
+
+
+def _mixed(mix: Mix, each: Sequence[tuple[LinearForm, LinearForm]]) -> tuple[LinearForm, LinearForm]:
+    """Both bounds by several load paths and the shafts that slide."""
+    low: LinearForm = {}
+    high: LinearForm = {}
+    for weight, ends in zip(mix.weights, each, strict=True):
+        if weight:
+            first, last = ends if weight > 0.0 else reversed(ends)
+            low, high = _sum(low, _times(first, weight)), _sum(high, _times(last, weight))
+    sliding: LinearForm = {(slide.shaft, "slide"): np.array(slide.factor / 2) for slide in mix.slides}
+    return _sum(low, _reversed(sliding)), _sum(high, sliding)
+
+
+def _times(form: LinearForm, factor: float) -> LinearForm:
+    return {variable: factor * weight for variable, weight in form.items()}
 
 
 def _ends_of_path(
@@ -322,6 +341,9 @@ class Play:
         Of a link that is no mesh the middle of its free turn stands for that angle.
         """
         stage, what = variable
+        if isinstance(stage, str):
+            play = axial_play(self.model, stage, self.trials.deviations)
+            return np.broadcast_to(play[:, None], self._shape)
         if stage.backlash is None:
             turn = self._turn(stage)
             return np.broadcast_to(turn.play if what == "play" else middle_of(turn), self._shape)
