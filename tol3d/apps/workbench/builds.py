@@ -11,14 +11,12 @@ import numpy as np
 from tol3d.errors import InputError, Tol3dError
 from tol3d.numerics.arrays import Array
 from tol3d.report import ViewModel, display_build
-from tol3d.report.body import World
 from tol3d.report.number import measured_text
 from tol3d.report.presenter import Display
 from tol3d.report.shown_unit import shown_unit
 from tol3d.simulate import Replay, replayed
 from tol3d.study import Simulation
-from tol3d.study.system import System, Trials, nominal_build
-from tol3d.study.system.posable import Posable
+from tol3d.study.system import Posable, System, Trials, nominal_build
 
 NOMINAL: Final = "nominal"
 FACTORS: Final = (1.0, 10.0, 100.0)
@@ -150,7 +148,7 @@ def build_view(
     reading = {own.name: own for own in worlds if measure in own.measured}
     if not world and reading:
         first = next((display for _, display in others.values()), nominal)
-        its = {own.name: _long(own, measure) for own in first.worlds}
+        its = _lengths(first, measure)
         world = max(reading, key=lambda own: (len(reading[own].bodies), its.get(own, 0.0)))
     elif not world and worlds:
         world = max(worlds, key=lambda own: len(own.bodies)).name
@@ -192,9 +190,13 @@ def _shown_in(build: Replay, world: str) -> Replay:
     return replace(build, simulation=replace(build.simulation, system=system.shown_in(world)))
 
 
-def _long(world: World, measure: str) -> float:
-    """Length of the lines of a measure in a world [mm]."""
-    return sum(float(np.linalg.norm(own.points[-1] - own.points[0])) for own in world.measured.get(measure, ()))
+def _lengths(display: Display, measure: str) -> Mapping[str, float]:
+    """Length of the lines of a measure in each world [mm]."""
+    lines = {own.name: own.measured.get(measure, ()) for own in display.worlds}
+    return {
+        name: sum(float(np.linalg.norm(line.points[-1] - line.points[0])) for line in every)
+        for name, every in lines.items()
+    }
 
 
 def _trials(rest: Trials, deviations: Array, positions: Mapping[str, Array] | None) -> Trials:

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from tol3d.study.system.draw import Each, Planar, Scalar
     from tol3d.study.system.mechanism import Mechanism, starter_lines, starter_named, starters_of
     from tol3d.study.system.plain import LengthSpec, PlainSystem, contributors_of, measures_of
+    from tol3d.study.system.posable import Posable
     from tol3d.study.system.stated import mean_build, nominal_build
     from tol3d.study.system.system import System
     from tol3d.study.system.trials import Trials
@@ -18,6 +19,7 @@ _HOMES = {
     "Mechanism": "tol3d.study.system.mechanism",
     "PlainSystem": "tol3d.study.system.plain",
     "Planar": "tol3d.study.system.draw",
+    "Posable": "tol3d.study.system.posable",
     "Scalar": "tol3d.study.system.draw",
     "System": "tol3d.study.system.system",
     "Trials": "tol3d.study.system.trials",
@@ -36,6 +38,7 @@ __all__ = [
     "Mechanism",
     "PlainSystem",
     "Planar",
+    "Posable",
     "Scalar",
     "System",
     "Trials",
