@@ -8,7 +8,7 @@ import cadquery as cq
 import pytest
 import yaml
 from deviations import deviating
-from foreign_parts import nist_file, solid
+from foreign_parts import nist_file, solid, step_file
 
 from tol3d.apps.drafting import scene_from
 from tol3d.apps.drafting.entry import Entry, Wording
@@ -69,6 +69,15 @@ def test_bolts_without_play_place_the_cover_by_two_holes(tmp_path: Path) -> None
     scene = yaml.safe_load(scene_from([bolted(tmp_path, 6.0)])[0])
     cover = placed_by(scene)["cover"]
     assert [relation["kind"] for relation in cover["relations"]] == ["coincident", "coaxial", "coaxial"]
+
+
+def test_a_recess_for_heads_of_bolts_does_not_float_on_them(tmp_path: Path) -> None:
+    """Holes of ⌀13 over holes of ⌀6, for heads of bolts: their axes meet, and no bolt plays in them by 7 mm."""
+    plate, cover = cq.Workplane().box(90, 60, 12).translate((2, 1, 6)), cq.Workplane().box(80, 50, 5)
+    shapes = {"plate": holed(plate, 6.0), "cover": holed(cover.translate((1, 2, 14.5)), 13.0)}
+    placed = placed_by(yaml.safe_load(scene_from([step_file(shapes, tmp_path / "recess.step")])[0]))
+    assert placed["cover"]["kind"] == "mate"
+    assert [relation["kind"] for relation in placed["cover"]["relations"]] == ["coincident", "coaxial", "coaxial"]
 
 
 def test_a_single_part_has_distances_and_no_verdict_on_zones_that_hold_by_construction(tmp_path: Path) -> None:

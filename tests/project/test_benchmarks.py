@@ -39,6 +39,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "stages": ("--trials", "1024", "--kept", "64", "--rounds", "1"),
     "startup": ("--runs", "1", "--ways", "without both", "--packages", "colorsys", "no_such_package"),
     "studies": ("--naive", "1", "--rounds", "1", "--most", "100", "--warm", "--systems", "spur pair"),
+    "step_mutations": ("--number", "3"),
     "structure": ("--trials", "16", "--route"),
     "tooth_curves": ("--trials", "10", "--rounds", "1", "--workers", "1"),
     "trains": ("--rounds", "1", "--contacts", "400", "--trains", "split torque"),
@@ -142,6 +143,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"spur pair │ fcl +│ +100 │ +1 │ statistics │ +{NUMBER}",
         rf"spur pair │ analytic +│ +100 │ +2 │ statistics │ +{NUMBER}",
     ),
+    "step_mutations": (rf"{NUMBER} files, the longest {NUMBER} s; 0 faults",),
     "structure": (
         rf"rooms +│ +{NUMBER}",
         rf"import levels of rooms +│ +{NUMBER}",

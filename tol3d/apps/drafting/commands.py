@@ -98,14 +98,13 @@ def _draft(
         raise InputError(f"{twice}: expected files of different names, got two")
     target = out or Path(Path(words[0]).stem + ".yaml")
     _refuse_there(target, force)
-    with err_console.status(f"reading {', '.join(names)}"):
-        contents, _ = with_other_files(contents)
-    copies = [(target.parent / own.path.name, own.content) for own in contents]
-    for path, content in copies:
-        if path.exists() and path.read_bytes() != content:
-            raise InputError(f"{path}: another file of that name lies beside the scene; --out names another folder")
     laid = [Seat(*own) for own in zip(seats, faces, strict=True)]
     with err_console.status(f"reading {', '.join(names)}") as status:
+        contents, _ = with_other_files(contents)
+        copies = [(target.parent / own.path.name, own.content) for own in contents]
+        for path, content in copies:
+            if path.exists() and path.read_bytes() != content:
+                raise InputError(f"{path}: another file of that name lies beside the scene; --out names another folder")
         text, drafted = scene_from(contents, laid, inspect=inspect, tell=status.update)
     for path, content in copies:
         if path.exists():

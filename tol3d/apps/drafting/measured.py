@@ -118,17 +118,8 @@ def gap(
     nominal = float((part.at(own) - other.at(there)) @ other.along(along))
     words = f"{{kind: gap, from: {feature(other, there)}, to: {feature(part, own)}, along: {direction(along)}}}"
     remark = f"guess: nominally {length(nominal)}" if word == "to" else "guess: between the axes"
-    name = numbered(names, f"{part.name} {word} {other.name}")
+    name = names.new(f"{part.name} {word} {other.name}", "measure")
     return Entry("measures", scalar(name), [Wording((words,), remark)])
-
-
-def numbered(names: Names, wish: str) -> str:
-    """A name with a number behind it where it is taken."""
-    count, name = 1, wish
-    while names.clashes(name, 1):
-        count += 1
-        name = f"{wish} {count}"
-    return names.new(name, "measure")
 
 
 def apart(part: DraftedPart, names: Names, chosen: Sequence[Key] | None) -> Iterator[Candidate]:
@@ -146,7 +137,7 @@ def apart(part: DraftedPart, names: Names, chosen: Sequence[Key] | None) -> Iter
             continue
         nominal = float(np.subtract(b.at, a.at) @ along)
         words = f"{{kind: gap, from: {part.of(start)}, to: {part.of(end)}, along: {direction(along)}}}"
-        name = numbered(names, f"{start} to {end}")
+        name = names.new(f"{start} to {end}", "measure")
         entry = Entry("measures", scalar(name), [Wording((words,), f"guess: nominally {length(nominal)}")])
         weight = float(1 + (first.kind == "cylinder") + (second.kind == "cylinder"))
         yield Candidate(entry, key, ("apart", *sorted((first.name, second.name))), weight)

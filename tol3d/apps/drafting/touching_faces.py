@@ -18,7 +18,7 @@ from tol3d.numerics.arrays import Array
 TOUCHING: Final = 1e-3  # mm; what models are drawn to
 PARALLEL: Final = 1e-6  # sine, cosine
 LARGEST_BOLT: Final = 3.0  # diameters of the smallest hole beside it
-THINNEST_BOLT: Final = 0.5  # of the hole; a thinner guess is none
+THINNEST_BOLT: Final = 0.5  # of the wider hole; one that is wider still clears a bolt's head and locates nothing
 ALONE: Final = "it touches no other part as it stands"
 BOLT_LESS: Final = 0.1  # of the hole, where no position says how much
 
@@ -367,14 +367,14 @@ def playing(own: Coaxial, contacts: Contacts) -> str | None:
     if not own.holes:
         noted(own, 2 * abs(own.own.radius - own.there.radius))
         return f"  - {{{words}}}" if 2 * abs(own.own.radius - own.there.radius) > TOUCHING else None
-    hole = 2 * min(own.own.radius, own.there.radius)
+    hole, wider = 2 * min(own.own.radius, own.there.radius), 2 * max(own.own.radius, own.there.radius)
     known = contacts.bolts(own)
     if known:
         bolt, why = 2 * max(pin.radius for pin in known), "that of the part in both holes"
     else:
         bolt = min(largest_bolt(part, each) for part, each in ((own.part, own.own), (own.other, own.there)))
         why = "guess: each hole at its smallest less its position"
-    if bolt < THINNEST_BOLT * hole or hole - bolt <= TOUCHING:
+    if bolt < THINNEST_BOLT * wider or hole - bolt <= TOUCHING:
         return None
     noted(own, hole - bolt)
     size = f"{number(round(bolt, 3))} mm"
