@@ -25,7 +25,8 @@ from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.methods.analytic import AnalyticMethod, analytic_play
 from tol3d.gearing.methods.geometric import GeometricMethod
 from tol3d.gearing.model import AxisOffset, LostMotion, Model, Reading, model_from_scene
-from tol3d.gearing.model.measure import Stage
+from tol3d.gearing.model import slides as model_slides
+from tol3d.gearing.model.measure import ParallelStage, Stage
 from tol3d.gearing.raceways import DeepGroove, ObliqueContact
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import closed_form, stack_of
@@ -942,6 +943,21 @@ def test_axial_play_where_load_paths_meet_in_a_network_is_refused(tmp_path: Path
     path.write_text(text.replace("tolerances:", f"tolerances:\n{sliding('left', '30 um')}"))
     with pytest.raises(SceneError, match=r"along\.of: expected a shaft in one load path, or in simple parallel ones"):
         model_of_scene(path)
+
+
+def test_more_load_paths_and_shafts_than_can_be_compared_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two paths and two shafts have four bounds: either path, and both where a slide vanishes, here the same ones."""
+    monkeypatch.setattr(model_slides, "MOST_MIXES", 4)
+    model, _ = split({"left": 0.03, "right": 0.07}, (1, 1), tmp_path)
+    (stage,) = (
+        own for own in of_kind(LostMotion, measure_of(model, "lost").kind).stages if isinstance(own, ParallelStage)
+    )
+    assert [mix.weights for mix in stage.mixes] == [(1.0, 0.0), (0.0, 1.0)]
+    monkeypatch.setattr(model_slides, "MOST_MIXES", 3)
+    with pytest.raises(SceneError, match="expected a shaft in one load path, or in simple parallel ones, got 'left'"):
+        split({"left": 0.03, "right": 0.07}, (1, 1), tmp_path)
 
 
 # transmission error of trains ----------------------------------------------------------------------------------------

@@ -1,14 +1,15 @@
 """Shafts that slide through their axial play, as helical gears make them do, and by how much that turns a train.
 
 A gear of twist kappa = tan(beta)/r, right hand positive, that slides by dz in the teeth of a mate at rest screws by
-kappa dz and opens no gap. So the thrust of a mesh on its gear is -kappa T, T its torque; where T changes
-sides, the shaft moves the way it yields. Of a shaft with the meshes "in" and "out", whose torques are opposite, the
-thrust is -T (kappa_in - kappa_out), and its play c turns what it drives by c |kappa_in - kappa_out| more, whichever of
-the two is larger and whichever side comes first: the optimum of the linear programme over all turns and shifts. A shaft
-at an end of the train has one mesh, an idler the same twist twice. Friction beyond the thrust, springs and weights that
-hold the shaft are left out: they make it less.
+kappa dz and opens no gap. So the thrust of a mesh on its gear is -kappa T, T its torque; where T changes sides, the
+shaft moves the way it yields. Of a shaft with the meshes "in" and "out", whose torques are opposite, the thrust is
+-T (kappa_in - kappa_out), and its play c turns what it drives by c |kappa_in - kappa_out| more, whichever of the two is
+larger and whichever side comes first: the optimum of the linear programme over all turns and shifts. A shaft at an end
+of the train has one mesh, an idler the same twist twice. Friction beyond the thrust, springs and weights that hold the
+shaft are left out: they make it less.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
@@ -24,6 +25,7 @@ from tol3d.gearing.shafts import Mesh
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 
+MOST_MIXES: Final = 2000  # each is compared in every trial; two paths of six shafts that slide have eight
 SAME_LEAD: Final = 1e-9  # of a twist; gears drawn for one lead differ by the digits of their helix angles
 
 
@@ -106,10 +108,15 @@ def _shared(model: Model, stages: Sequence[AnyStage], own: ParallelStage, shafts
             for path in own.paths
         ]
     )  # fmt: skip
-    if not found:
+    if not found or own.loops or _mixes(*turned.shape) > MOST_MIXES:  # see refuse_shared_thrust
         return own
     mixes, gaps = ([_mix(weights, turned, found) for weights in _vertices(turned, total)] for total in (1.0, 0.0))
     return replace(own, mixes=tuple(dict.fromkeys(mixes)), gaps=tuple(dict.fromkeys(gaps)))
+
+
+def _mixes(paths: int, shafts: int) -> int:
+    """Largest number of vertices of a total of 1."""
+    return sum(math.comb(paths, size) * math.comb(shafts, size - 1) for size in range(1, paths + 1))
 
 
 def _screwed(model: Model, stage: AnyStage, shaft: str) -> float:
@@ -165,12 +172,17 @@ def refuse_shared_thrust(scene: Scene, model: Model) -> None:
                 names = {link.name for link in links_of(tuple(met))}
                 helical = any(mesh.pair.pinion.twist for mesh in model.meshes if mesh.name in names)
                 parallel = [element for element in met if isinstance(element, Parallel)]
-                mixed = any(isinstance(own, Network) or _is_nested(own) for own in parallel)
+                mixed = any(isinstance(own, Network) or _is_nested(own) or _is_large(model, own) for own in parallel)
                 carried = bool(parallel) and any(link.carrier for link in links_of(path))
                 if helical and (mixed or carried or len(parallel) > 1 or (not parallel and len(met) > 2)):
                     words = f"expected a shaft in one load path, or in simple parallel ones, got {shaft!r}: how the "
                     advice = "load paths that meet at it share its thrust is not simulated; hold it along its axis"
                     raise scene.refuse(("tolerances", contributor.name, "of"), f"{words}{advice}")
+
+
+def _is_large(model: Model, group: Parallel) -> bool:
+    met = {shaft for link in links_of((group,)) for shaft in _shafts(link)}
+    return _mixes(len(group.paths), len(met.intersection(sliding_shafts(model)))) > MOST_MIXES
 
 
 def _is_nested(group: Parallel) -> bool:

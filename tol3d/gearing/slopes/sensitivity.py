@@ -91,9 +91,9 @@ def _variable_rates(model: Model, measure: Measure, moves: BuildRates, seats: Se
     """Derivatives of a stage's play, or of the angle at which its driven gear rests, (rows, components)."""
     stage, what = variable
     rates = np.zeros((len(moves.scale), model.component_count))
-    if isinstance(stage, str):
-        own = axial_rates(model, stage, seats.trials.deviations)
-        return np.repeat(own, measure.positions.in_a_trial, axis=0)
+    if isinstance(stage, str) or what == "slide":
+        by_shaft = axial_rates(model, str(stage), seats.trials.deviations)
+        return np.repeat(by_shaft, measure.positions.in_a_trial, axis=0)
     if stage.backlash is None:
         link = model.link(stage.link)
         for name, own in link.rates(link_trials(model, measure, link, seats.trials), what).items():
