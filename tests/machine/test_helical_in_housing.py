@@ -103,9 +103,14 @@ measures:{READ}
 
 
 @pytest.mark.parametrize("hands", [("right", "left"), ("left", "right")])
-def test_methods_differ_by_what_is_of_second_order(hands: tuple[str, ...], tmp_path: Path) -> None:
-    """Axes that lean by up to 0.9 mrad: lines end where mates do that stand the backlash apart, f j/tan(beta_b)."""
-    system, count = gearbox_of(housed(ASIDE + THIN, SHAFTS + gears(hands=hands)), tmp_path), 300
+@pytest.mark.parametrize("backward", ["", "4 mm", "6 mm"])
+def test_methods_differ_by_what_is_of_second_order(hands: tuple[str, ...], backward: str, tmp_path: Path) -> None:
+    """Axes that lean by up to 0.9 mrad: lines end where mates do that stand the backlash apart, f j/tan(beta_b).
+
+    A gear that faces backward, the pinion at 4 mm or the wheel at 6 mm, keeps its hand.
+    """
+    shafts = SHAFTS.replace(f"at: {backward}", f"at: {backward}, facing: backward") if backward else SHAFTS
+    system, count = gearbox_of(housed(ASIDE + THIN, shafts + gears(hands=hands)), tmp_path), 300
     turns = np.random.default_rng(3).random(count)
     exact, linear = (values(system, own, aside(4, count) | thin(count), turns)["backlash"] for own in METHODS)
     assert np.std(exact) > 4e-3
