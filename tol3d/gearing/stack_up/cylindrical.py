@@ -103,11 +103,13 @@ class HelicalStack(SpurStack):
 
     @property
     def turns_by_teeth(self) -> bool:
-        """True if axes lean."""
-        return any(term.leans for term in self.terms)
+        """True if single flanks deviate, or axes lean."""
+        return self.teeth is not None or any(term.leans for term in self.terms)
 
     def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
         """As of single flanks: the pair of leaning axes that touches first, (trials, positions) [mm at the arm]."""
+        if self.teeth:
+            return super().turned_by_teeth(side, deviations, driver_angle)
         in_plane, across = self._lost_by_tilts(deviations)
         return side * lost((in_plane + side * across)[:, None] / 2, self._lines.ends(side, driver_angle))
 

@@ -1,10 +1,12 @@
-"""Loss of each flank side of a spur pair by flanks that deviate one by one: the pair that stands out most touches.
+"""Loss of each flank side of a pair by flanks that deviate one by one: the pair that stands out most touches.
 
 On the tangent of both base circles, T = a sin(alpha_w) long, a pair of flanks touches r_b1 t_1 from its one end and
 r_b2 t_2 = T - r_b1 t_1 from the other; t_1 falls by as much as the driver's tooth goes on. To first order each pair
 loses the sum of both flank offsets there, with parallel axes at the end of the common face where the sum is larger.
 Beyond the path of contact the tip edge of one gear may still touch first, where its pair stands out by
 more than the edge has left the mate's flank.
+
+Of helical gears that holds slice by slice, and a pair loses what the slice on its contact line loses that loses most.
 
 Neglected: effects of the curvature of a deviation. Axes that move take the path of contact along, to first order.
 """
@@ -34,7 +36,8 @@ NUMBERS_AT_ONCE: Final = 4_000_000
 """Deviations of rows that are held at once: 32 MB."""
 
 KERNELS: Final = "tol3d.gearing.stack_up.tooth_kernels"
-"""Lazy import: it loads the compiler of kernels, which stack-ups of other gears do not need."""
+LINE_KERNELS: Final = "tol3d.gearing.stack_up.line_kernels"
+"""Lazy imports: they load the compiler of kernels, which stack-ups of other gears do not need."""
 
 WHO_TURNS: Final[Mapping[Role | None, int]] = {None: 0, "driven": 1, "driver": 2}
 """In the words of tooth_kernels."""
@@ -108,7 +111,7 @@ class BuiltTeeth:
 
 @dataclass(frozen=True, eq=False)
 class ToothPairs:
-    """The pairs of flanks of a mesh of spur gears, at least one of which has flanks that deviate one by one.
+    """The pairs of flanks of a mesh of spur or helical gears, at least one of which has flanks that deviate one by one.
 
     `beyond` is how far beyond the path of contact pairs are looked at [pitches].
     """
@@ -151,13 +154,25 @@ class ToothPairs:
         start = self.pair.working_pressure_angle + first.base_half_angle
         teeth, count = self._teeth(side, driver_angle)
         places = (self.driver.ahead, self.driven.ahead, first.teeth, second.teeth)
-        found: Array = importlib.import_module(KERNELS).taken(
-            (self.driver.measures, self.driven.measures, (self._tangent, start, first.angular_pitch, half)),
+        line: tuple[float, ...] = (self._tangent, start, first.angular_pitch, half)
+        kernel, cosine = importlib.import_module(KERNELS).taken, self.pair.base_helix_cosine
+        if first.helix_angle:
+            fall = first.hand * math.tan(first.base_helix_angle) / half
+            line = (*line, first.twist, fall, math.tan(self.pair.working_pressure_angle))
+            kernel = importlib.import_module(LINE_KERNELS).taken_on_lines
+        found: Array = kernel(
+            (self.driver.measures, self.driven.measures, line),
             (side, WHO_TURNS[turns], count, *places),
-            (built.driver, built.driven, built.trial),
-            (teeth, driver_angle, lean, np.zeros(0) if apart is None else apart, self._shifts(side, moved)),
+            (built.driver / cosine, built.driven / cosine, built.trial),
+            (
+                teeth,
+                driver_angle,
+                lean / cosine,
+                np.zeros(0) if apart is None else apart / cosine,
+                self._shifts(side, moved),
+            ),
         )
-        return found
+        return found * cosine
 
     def _shifts(self, side: int, moved: tuple[Array, Array] | None) -> Array:
         """Change by moved axes of a tooth's roll on the line of centres [rad] and of the tangent [mm], (rows, 2).
@@ -192,8 +207,9 @@ class ToothPairs:
         if self.reading.teeth == "driven":
             return (side == 1) - np.rint(place + 0.5).astype(np.int64), 1
         working = self.pair.working_pressure_angle
-        last_psi = working + gear.base_half_angle - self._start_roll + self.beyond * gear.angular_pitch
-        length = gear.tip_roll - self._start_roll
+        leaning = abs(gear.twist) * self.pair.common_face / 2
+        last_psi = working + gear.base_half_angle - self._start_roll + leaning + self.beyond * gear.angular_pitch
+        length = gear.tip_roll - self._start_roll + 2 * leaning
         count = math.floor(length / gear.angular_pitch + 2 * self.beyond) + 1
         return side * np.floor(last_psi / gear.angular_pitch - side * place).astype(np.int64), count
 

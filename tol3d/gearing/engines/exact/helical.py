@@ -13,6 +13,8 @@ from typing import NamedTuple
 from tol3d.gearing.engines.exact.foot import (
     PER_TURN,
     TURN,
+    as_given,
+    begun,
     external,
     first_face,
     flank_of,
@@ -57,6 +59,7 @@ class HelicalTooth(NamedTuple):
 
 
 external(HelicalTooth)
+variant(begun, HelicalTooth)(as_given)
 
 
 @part

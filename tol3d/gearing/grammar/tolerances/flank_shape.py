@@ -176,7 +176,10 @@ ShapeLaw = Annotated[
 
 
 class FlankShapeSpec(FlankToleranceSpec):
-    """A deviation of the shape of single flanks of a spur gear."""
+    """A deviation of the shape of single flanks of a spur or helical gear.
+
+    Of a helical gear it is stated in the transverse section, along the tangent of the base circle.
+    """
 
     each: Literal["tooth", "gear"] = Field(
         description="tooth: every tooth has a deviation of its own; gear: all teeth of the gear have the same"
@@ -283,11 +286,11 @@ class FlankShapeSpec(FlankToleranceSpec):
         return GivenDraw(names, tuple(found), f"measured in {law.file}")
 
     def places(self, gear: SpurGear) -> tuple[tuple[Place, ...], ...]:
-        """The flanks that each of its components moves."""
-        teeth = range(gear.teeth)
+        """The flanks that each of its components moves, by cos(beta_b) of it along their normals."""
+        teeth, cosine = range(gear.teeth), gear.base_helix_cosine
         groups = [[tooth] for tooth in teeth] if self.each == "tooth" else [list(teeth)]
         return tuple(
-            tuple(Place(tooth, flank, 1.0) for tooth in group for flank in self.flanks_of(side))
+            tuple(Place(tooth, flank, cosine) for tooth in group for flank in self.flanks_of(side))
             for side in self.sides
             for group in groups
         )
