@@ -10,22 +10,20 @@ from dataclasses import replace
 
 from tol3d.errors import GeometryError
 from tol3d.gears.involute import involute
-from tol3d.gears.spur_gear import SpurGear
 from tol3d.gears.spur_pair import SpurPair
 
-STEP = 0.01  # modules; of addenda and shifts that are tried
+STEP = 0.02  # modules; of addenda and shifts that are tried
 FURTHEST_ADDENDUM = 0.6  # modules; by which an addendum is changed at most
 FURTHEST_SHIFT = 1.0  # modules; the same of a profile shift
 FREE = 1e-3  # mm; a nominal backlash so far below 0 is one of rounded sizes
 DIGITS = 4  # of a module, and of a centre distance [mm], as they are said
 
 
-def remedy(pinion: SpurGear, wheel: SpurGear, centre_distance: float) -> str:
+def remedy(pair: SpurPair) -> str:
     """A change that would do, as the end of a sentence: an addendum, a profile shift or a centre distance.
 
     Pairs whose teeth leave room are proposed first; "" if nothing that is tried would do.
     """
-    pair = SpurPair(pinion, wheel, centre_distance)
     least = min(pair.normal_backlash, 0.0)
     for free in dict.fromkeys((-FREE, least - FREE)):
         for words, tried in changes(pair):

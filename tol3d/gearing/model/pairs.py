@@ -20,8 +20,10 @@ from tol3d.gears import (
     SpurPair,
     pitch_angles,
 )
+from tol3d.gears.remedies import remedy
 from tol3d.gears.spur_pair import crossed_axes
 from tol3d.scene import Scene
+from tol3d.scene.place import KeyPath
 from tol3d.units import Quantity
 
 
@@ -66,11 +68,15 @@ def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
         raise scene.refuse(("moves", name), words)
     if isinstance(pinion, SpurGear) and isinstance(wheel, SpurGear) and (crossed := crossed_axes(pinion, wheel)):
         raise scene.refuse(("moves", name, "driven"), crossed)
+    path: KeyPath = ("moves", name, "centre_distance")
     try:
         pair = cylindrical_pair(pinion, wheel, move.centre_distance.internal)
+    except GeometryError as error:
+        raise scene.refuse(path, str(error)) from None
+    try:
         pair.refuse_interference()
     except GeometryError as error:
-        raise scene.refuse(("moves", name, "centre_distance"), str(error)) from None
+        raise scene.refuse(path, f"{error}{remedy(pair) if isinstance(pair, SpurPair) else ''}") from None
     return pair
 
 

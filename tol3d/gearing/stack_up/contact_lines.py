@@ -32,11 +32,6 @@ class ContactLines:
         pinion, wheel = self.pair.pinion, self.pair.wheel
         return -wheel.base_radius * (wheel.tip_roll - at_pitch), pinion.base_radius * (pinion.tip_roll - at_pitch)
 
-    @property
-    def furthest(self) -> float:
-        """Largest distance [mm] from the pitch point, along the line of action, of a line in the middle of the face."""
-        return max(map(abs, self.path)) + math.tan(self.pair.pinion.base_helix_angle) * self.pair.common_face / 2
-
     def ends(self, side: int, driver_angle: Array) -> tuple[Array, Array]:
         """Lowest and highest l of all points that may touch, over that of the upper end of the face; each (rows,).
 

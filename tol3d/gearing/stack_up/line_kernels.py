@@ -47,6 +47,8 @@ class ContactLine(NamedTuple):
         fall: by how much less a lean opens per length from the pitch point along the line of action [1/mm], of its
             opening at the upper end of the face; on the driver's right flanks.
         pitch_roll: roll of the driver at the pitch point [rad].
+        square: cos(beta_b)^2.
+        up: h_1 sin(beta_b) cos(beta_b), by which a foot on the mate lies higher per gap of the driver's right flanks.
     """
 
     tangent: float
@@ -56,6 +58,8 @@ class ContactLine(NamedTuple):
     twist: float
     fall: float
     pitch_roll: float
+    square: float
+    up: float
 
 
 class Row(NamedTuple):
@@ -65,12 +69,16 @@ class Row(NamedTuple):
         side: 1 if the driver's right flanks touch, -1 if its left ones do.
         roll, mate_roll: of driver and driven at z = 0 [rad].
         lean: loss by tilted axes at the upper end of the face in the pitch point [mm].
+        strain: of the driven gear less that of the driver.
+        up: by how much higher a point's foot lies on the mate than the point [mm], where a gap is read.
     """
 
     side: float
     roll: float
     mate_roll: float
     lean: float
+    strain: float
+    up: float
 
 
 def taken_on_lines(
@@ -88,6 +96,13 @@ def taken_on_lines(
 
 
 @part
+def face_of(driver: GearTeeth, driven: GearTeeth, row: Row) -> tuple[float, float]:
+    """The heights on the driver's face [mm] between which its points have their feet on the mate's."""
+    half, mate_half = 0.5 * driver.face, 0.5 * driven.face
+    return max(-half, -mate_half - row.up), min(half, mate_half - row.up)
+
+
+@part
 def in_slice(
     driver: GearTeeth, driven: GearTeeth, line: ContactLine, flank: Flank, mating: Flank, row: Row, z: float
 ) -> float:
@@ -96,10 +111,12 @@ def in_slice(
     roll, mate_roll = row.roll + on, row.mate_roll - on * driver.base / driven.base
     flat = LineOfContact(line.tangent, line.start, line.pitch, 0.0)
     loss = taken_by(driver, driven, flat, flank, mating, (roll, mate_roll), 0.0)
-    loss += (flank.helix / driver.face + mating.helix / driven.face) * z
+    loss += flank.helix / driver.face * z + mating.helix / driven.face * (z + row.up)
     if row.lean != 0.0:
         along = driver.base * (roll - line.pitch_roll)
         loss += row.lean * (z / line.half - row.side * line.fall * along)
+    if row.strain != 0.0:  # base pitches differ: a pair is the later the further it lies from the pitch point
+        loss -= row.strain * driver.base * (row.roll - line.pitch_roll)
     return loss
 
 
@@ -158,8 +175,9 @@ def most_beyond(
     way: float,
 ) -> float:
     """Largest loss by a pair `way` [mm] beyond an end of its contact line, about; -inf where the face ends."""
-    if abs(end + 2.0 * way) > line.half:
-        way = 0.5 * (math.copysign(line.half, way) - end)
+    low, high = face_of(driver, driven, row)
+    if not low <= end + 2.0 * way <= high:
+        way = 0.5 * ((high if way > 0.0 else low) - end)
     if way == 0.0:
         return -math.inf
     at_end = in_slice(driver, driven, line, flank, mating, row, end)
@@ -177,10 +195,11 @@ def most_on_line(
     per_roll = 1.0 / (row.side * line.twist)
     first = (row.roll - driver.tip) * per_roll
     last = (driven.tip - row.mate_roll) * driven.base / driver.base * per_roll
-    low, high = max(-line.half, min(first, last)), min(line.half, max(first, last))
+    lower, upper = face_of(driver, driven, row)
+    low, high = max(lower, min(first, last)), min(upper, max(first, last))
     way = BEYOND * abs(per_roll)
     if low > high:  # no line: the tip edges are nearest to it at an end of the face
-        end = line.half if low >= line.half else -line.half
+        end = upper if low >= upper else lower
         loss = in_slice(driver, driven, line, flank, mating, row, end)
         return max(loss, most_beyond(driver, driven, line, flank, mating, row, end, -math.copysign(way, end)))
     most = most_within(driver, driven, line, flank, mating, row, (low, high))
@@ -192,8 +211,8 @@ def most_on_line(
     GearTeeth,
     GearTeeth,
     ContactLine,
-    arrays="int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[::1], "
-    "float64[::1], float64[:, ::1], float64[::1]",
+    arrays="int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], "
+    "float64[:, ::1], float64[::1], float64[:, ::1], float64[::1]",
     level=QUICK,
 )
 def take_on_lines(
@@ -211,7 +230,7 @@ def take_on_lines(
     shifts: Array,
     losses: Array,
 ) -> None:
-    """Compute the loss of backlash by the flanks of a side; arguments as of tooth_kernels.take."""
+    """Compute the loss of backlash by the flanks of a side; arguments as of tooth_kernels.take, `lean` as in taken."""
     side, count, right = which[0], which[2], 0 if which[0] == 1 else 1
     took, moved, again = np.empty(count), np.empty(count), np.empty(count, dtype=np.bool_)
     for row in range(len(losses)):
@@ -222,22 +241,26 @@ def take_on_lines(
         start, tangent = line.start, line.tangent
         if len(shifts):
             start, tangent = start + shifts[row, 0], tangent + shifts[row, 1]
-        shifted = ContactLine(tangent, start, line.pitch, line.half, line.twist, line.fall, line.pitch_roll)
+        shifted = ContactLine(
+            tangent, start, line.pitch, line.half, line.twist, line.fall, line.pitch_roll, line.square, line.up
+        )
         for _ in range(LOOKS):  # a gear turned by its pair's loss is at another roll
             for k in range(count):
                 if again[k]:
                     flank = flank_in(numbers, number, place - side * k, which[5], right)
                     mating = flank_in(mating_numbers, number, mate_place + side * k, which[6], right)
                     azimuth = angles[row] + (first[row] - side * k) * line.pitch
-                    roll, before = start - side * azimuth, took[k]
+                    roll, before, up = start - side * azimuth, took[k], 0.0
                     mate_roll = (tangent - driver.base * roll) / driven.base
                     if which[1] == BY_DRIVEN:
                         mate_roll -= before / driven.base
-                    else:
+                    elif which[1] == BY_DRIVER:
                         mate_roll -= open_by / driven.base
-                        if which[1] == BY_DRIVER:
-                            roll += (open_by - before) / driver.base
-                    own = Row(float(side), roll, mate_roll, lean[number])
+                        roll += (open_by - before) / driver.base
+                    else:  # the foot is not in the slice of its point
+                        mate_roll -= line.square * open_by / driven.base
+                        up = side * line.up * open_by
+                    own = Row(float(side), roll, mate_roll, lean[number, 0], lean[number, 1], up)
                     took[k] = most_on_line(driver, driven, shifted, flank, mating, own)
                     moved[k] = min(AGAIN * abs(took[k] - before), FAR)
             most, looks = took.max(), False

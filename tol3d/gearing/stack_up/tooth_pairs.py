@@ -108,6 +108,10 @@ class BuiltTeeth:
     driven: Array
     trial: Integers
 
+    def in_section(self, cosine: float) -> tuple[Array, Array, Integers]:
+        """The same along the line of action of a transverse section, of which `cosine` lies along the normals."""
+        return self.driver / cosine, self.driven / cosine, self.trial
+
 
 @dataclass(frozen=True, eq=False)
 class ToothPairs:
@@ -143,7 +147,8 @@ class ToothPairs:
             side: 1 where the driver's right flanks touch, -1 where its left ones do.
             built: their trials.
             driver_angle: (rows,) [rad].
-            lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm].
+            lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm]; of helical gears
+                (trials, 2), with the strain of the driven gear less that of the driver.
             moved: how much further apart the axes stand, and how much further the driven one in the world's +y,
                 (rows,) [mm] each; None if they are at their nominal places.
             turns: the gear that turns until the side touches; None reads its gap as the gears stand.
@@ -158,16 +163,17 @@ class ToothPairs:
         kernel, cosine = importlib.import_module(KERNELS).taken, self.pair.base_helix_cosine
         if first.helix_angle:
             fall = first.hand * math.tan(first.base_helix_angle) / half
-            line = (*line, first.twist, fall, math.tan(self.pair.working_pressure_angle))
+            up = first.hand * math.sin(first.base_helix_angle) * cosine
+            line = (*line, first.twist, fall, math.tan(self.pair.working_pressure_angle), cosine**2, up)
             kernel = importlib.import_module(LINE_KERNELS).taken_on_lines
         found: Array = kernel(
             (self.driver.measures, self.driven.measures, line),
             (side, WHO_TURNS[turns], count, *places),
-            (built.driver / cosine, built.driven / cosine, built.trial),
+            (built.driver, built.driven, built.trial) if cosine == 1.0 else built.in_section(cosine),
             (
                 teeth,
                 driver_angle,
-                lean / cosine,
+                lean / np.array([cosine, 1.0]) if first.helix_angle else lean,
                 np.zeros(0) if apart is None else apart / cosine,
                 self._shifts(side, moved),
             ),
@@ -233,6 +239,12 @@ def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None
     driver, driven = (_flanks(model, mesh, name, acting) for name in (mesh.driver, mesh.driven))
     beyond = CONTACT_MARGIN + margin_of(model, mesh)
     return ToothPairs(mesh.pair, reading, mesh.resting_flank(reading.flank), driver, driven, beyond)
+
+
+def lines_alone(model: Model, mesh: Mesh, pair: SpurPair, reading: Reading) -> ToothPairs:
+    """The pairs of flanks of a mesh whose gears grow apart, so that base pitches differ; no flank deviates."""
+    driver, driven = (_flanks(model, mesh, name, ()) for name in (mesh.driver, mesh.driven))
+    return ToothPairs(pair, reading, mesh.resting_flank(reading.flank), driver, driven, CONTACT_MARGIN)
 
 
 def teeth_deviate(model: Model, mesh: Mesh) -> bool:

@@ -45,7 +45,8 @@ from tol3d.numerics.compiled import part, variant
 
 PER_WAVE = 10  # heights looked at for each wave of the form along a contact line
 FEWEST = 6  # of a form without waves
-ACROSS = 2  # Newton's steps across the line at each height
+ACROSS = 3  # Newton's steps across the line at each height
+BESIDE = 0.03  # rad; the longest of them: forms that bend more than the involute make no parabola
 
 
 class DeviatedHelicalTooth(NamedTuple):
@@ -273,13 +274,14 @@ def lowest_at(
 ) -> Lowest:
     """The lowest gap at a height [mm], across the generators from a roll [rad]."""
     roll = min(max(roll, own.begin), own.end)
-    gap, profile, face = 0.0, 0.0, 0.0
+    best = Lowest(math.inf, roll, z, 0.0, 0.0)
     for _ in range(ACROSS):
         at = foot(own, mate, pose, facing, roll, z)
-        step = min(max(roll - at.by_profile / at.bend, own.begin), own.end) - roll
-        gap = at.gap + at.by_profile * step + 0.5 * at.bend * step * step
-        roll, profile, face = roll + step, at.profile, at.face
-    return Lowest(gap, roll, z, profile, face)
+        if at.gap < best.gap:
+            best = Lowest(at.gap, roll, z, at.profile, at.face)
+        step = min(max(-at.by_profile / at.bend, -BESIDE), BESIDE)
+        roll = min(max(roll + step, own.begin), own.end)
+    return best
 
 
 @part
@@ -299,32 +301,33 @@ def deviated_screw_begun(
     own = deviated_tooth
     lean, mate_lean = leaning(own, facing.sigma), leaning(mate, facing.sigma)
     roll, z = started(own, lean, roll, z)
-    best, here = Lowest(math.inf, roll, z, 0.0, 0.0), Lowest(math.inf, roll, z, 0.0, 0.0)
-    start, low, step, count, k, at_vertex = roll + lean * z, z, 0.0, 0, -1, False
-    one, other = math.inf, math.inf  # gaps at the two heights before
-    while k < count:
+    best, start = Lowest(math.inf, roll, z, 0.0, 0.0), roll
+    profile, face = 0.0, 0.0
+    for _ in range(ACROSS):  # to the line of the involutes
+        at = foot(plain_screw(own), plain_screw(mate), pose, facing, start, z)
+        start -= at.by_profile / at.bend
+        profile, face = at.profile, at.face
+    start += lean * z
+    low, high = max(own.low, z + mate.low - face), min(own.high, z + mate.high - face)
+    low, high = between(low, high, start, lean, own.begin, own.end)
+    low, high = between(low, high, profile + mate_lean * z, mate_lean, mate.begin, mate.end)
+    count, long = 2, max(high - low, 0.0)
+    if own.form != 0.0 or mate.form != 0.0:
+        count = FEWEST + int(PER_WAVE * (waves_along(own, long) + waves_along(mate, long)))
+    step, k, at_vertex = long / (count - 1), 0, False
+    z, one, other = low, math.inf, math.inf  # gaps at the two heights before
+    while k < count and low <= high:
         here = lowest_at(own, mate, pose, facing, start - lean * z, z)
-        if k >= 0 and here.gap < best.gap:
+        if here.gap < best.gap:
             best = here
-        if k < 0:  # the line
-            start = here.roll + lean * z
-            low, high = max(own.low, z + mate.low - here.face), min(own.high, z + mate.high - here.face)
-            low, high = between(low, high, start, lean, own.begin, own.end)
-            low, high = between(low, high, here.profile + mate_lean * z, mate_lean, mate.begin, mate.end)
-            if low > high:
-                break
-            count = 2
-            if own.form != 0.0 or mate.form != 0.0:
-                count = FEWEST + int(PER_WAVE * (waves_along(own, high - low) + waves_along(mate, high - low)))
-            step = (high - low) / (count - 1)
-        elif at_vertex:
-            at_vertex = False
-        else:
+        if not at_vertex:
             first, one, other = one, other, here.gap
             if one < first and one <= other and first < math.inf:  # the height before is lower than both beside it
                 at_vertex = True
                 z = low + (k - 1) * step + 0.5 * step * (first - other) / (first - 2.0 * one + other)
                 continue
+        at_vertex = False
         k += 1
         z = low + k * step
-    return Start(best.roll, best.z, best.profile, best.face, best.gap < math.inf)
+    known = best.gap < math.inf
+    return Start(best.roll, best.z, best.profile, best.face, known, best.gap, step if count > 2 else math.inf)
