@@ -227,7 +227,8 @@ def test_what_was_never_derived_or_does_not_mesh_is_refused(scene: Scene, change
         ),
         (
             "tolerances",
-            "p: {kind: pitch_deviation, of: wheel, flanks: each, limits: {iso_class: 6}, law: {kind: normal, cpk: 1}}",
+            "p: {kind: profile_form, of: wheel, flanks: each, each: tooth, shape: barrel, limits: {iso_class: 6},\n"
+            "    law: {kind: uniform}}",
             "tolerances.p.of: expected the name of a spur gear",
         ),
         (

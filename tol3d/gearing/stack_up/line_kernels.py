@@ -1,9 +1,10 @@
 """The compiled half of tooth_pairs.py for helical gears: loss by deviating flanks along contact lines, row by row.
 
 Every slice across the axes at a height z is a spur pair, its driver's tooth turned by kappa_1 z: what tooth_kernels.py
-has of a spur pair holds in each. A pair loses as much as the slice of the common face that loses most. Along a contact
-line that is an end or, of forms, wherever both flanks stand out most; beyond its ends, where one of the tip edges
-has left its mate, it may still be a little further on. All lengths here are transverse, along the line of action.
+has of a spur pair holds in each. A pair loses as much as the slice of the common face that loses most: one at an end of
+its contact line, along which levels, slopes and leans are straight, or a little beyond, where a tip edge has only
+begun to leave its mate. Forms of profiles are not among them. All lengths here are transverse, along the line of
+action.
 """
 
 import math
@@ -30,8 +31,6 @@ from tol3d.numerics.compiled import QUICK, kernel, part
 
 Integers = NDArray[np.int64]
 
-PER_WAVE = 10  # slices looked at for each wave of the form along a contact line
-FEWEST = 6  # of a form without waves
 BEYOND = 0.02  # rad of roll; through slices one and two of it beyond an end of a contact line goes a parabola
 
 
@@ -121,46 +120,10 @@ def in_slice(
 
 
 @part
-def waves_on(gear: GearTeeth, flank: Flank, line: ContactLine, long: float) -> float:
-    """Number of waves of a form over a length along the face [mm]."""
-    return gear.wave_rate * abs(line.twist) * long / (2.0 * math.pi) if flank.form != 0.0 else 0.0
-
-
-@part
 def top(left: float, middle: float, right: float) -> float:
     """Place of the top of the parabola through three values at -1, 0 and 1; 0 where it has none."""
     bow = left - 2.0 * middle + right
     return 0.5 * (left - right) / bow if bow < 0.0 else 0.0
-
-
-@part
-def most_within(
-    driver: GearTeeth,
-    driven: GearTeeth,
-    line: ContactLine,
-    flank: Flank,
-    mating: Flank,
-    row: Row,
-    ends: tuple[float, float],
-) -> float:
-    """Largest loss by a pair in the slices between two heights [mm]."""
-    low, high = ends
-    count, long = 2, high - low
-    if flank.form != 0.0 or mating.form != 0.0:
-        waves = waves_on(driver, flank, line, long)
-        waves += waves_on(driven, mating, line, long * driver.base / driven.base)
-        count = FEWEST + int(PER_WAVE * waves)
-    step = long / (count - 1)
-    before, here = -math.inf, in_slice(driver, driven, line, flank, mating, row, low)
-    most = here
-    for k in range(1, count):
-        after = in_slice(driver, driven, line, flank, mating, row, low + k * step)
-        if k > 1 and here > before and here >= after:
-            z = low + (k - 1 + top(before, here, after)) * step
-            most = max(most, in_slice(driver, driven, line, flank, mating, row, z))
-        before, here = here, after
-        most = max(most, here)
-    return most
 
 
 @part
@@ -202,7 +165,8 @@ def most_on_line(
         end = upper if low >= upper else lower
         loss = in_slice(driver, driven, line, flank, mating, row, end)
         return max(loss, most_beyond(driver, driven, line, flank, mating, row, end, -math.copysign(way, end)))
-    most = most_within(driver, driven, line, flank, mating, row, (low, high))
+    most = in_slice(driver, driven, line, flank, mating, row, low)
+    most = max(most, in_slice(driver, driven, line, flank, mating, row, high))
     most = max(most, most_beyond(driver, driven, line, flank, mating, row, low, -way))
     return max(most, most_beyond(driver, driven, line, flank, mating, row, high, way))
 

@@ -3,9 +3,9 @@
 In each transverse section a flank stands out of its involute by an offset of roll and height, along the tangent of the
 base circle; cos(beta_b) of that is the offset d along the normals, which all coefficients mean. A point of it lies on
 the same screw surface turned by d/(r_b cos beta_b), in its section as much further on the string. Along the contact
-line of a pair the involutes do not curve away: there the offsets of both flanks alone decide where it touches, at an
-end of the line, or wherever their forms stand out most. Neglected terms are of the order of (a slope)^2 times the
-offset, 1e-8 um.
+line of a pair the involutes do not curve away: there the offsets of both flanks alone decide where it touches. Levels
+and slopes are straight along it, and an end is lowest. Forms of profiles are not among them. Neglected terms are of the
+order of (a slope)^2 times the offset, 1e-8 um.
 """
 
 import math
@@ -43,10 +43,7 @@ from tol3d.gearing.engines.exact.nearest import started
 from tol3d.gearing.engines.exact.numbers import CLOSED, NOWHERE, Facing, Foot, Nearest, Pose, Start
 from tol3d.numerics.compiled import part, variant
 
-PER_WAVE = 10  # heights looked at for each wave of the form along a contact line
-FEWEST = 6  # of a form without waves
-ACROSS = 3  # Newton's steps across the line at each height
-BESIDE = 0.03  # rad; the longest of them: forms that bend more than the involute make no parabola
+ACROSS = 2  # Newton's steps across the line at each height
 
 
 class DeviatedHelicalTooth(NamedTuple):
@@ -274,60 +271,34 @@ def lowest_at(
 ) -> Lowest:
     """The lowest gap at a height [mm], across the generators from a roll [rad]."""
     roll = min(max(roll, own.begin), own.end)
-    best = Lowest(math.inf, roll, z, 0.0, 0.0)
+    gap, profile, face = 0.0, 0.0, 0.0
     for _ in range(ACROSS):
         at = foot(own, mate, pose, facing, roll, z)
-        if at.gap < best.gap:
-            best = Lowest(at.gap, roll, z, at.profile, at.face)
-        step = min(max(-at.by_profile / at.bend, -BESIDE), BESIDE)
-        roll = min(max(roll + step, own.begin), own.end)
-    return best
-
-
-@part
-def waves_along(tooth: DeviatedHelicalTooth, high: float) -> float:
-    """Number of waves of a flank's form along a contact line of so much height [mm]."""
-    return tooth.waves * abs(tooth.twist) * high * tooth.per_length if tooth.form != 0.0 else 0.0
+        step = min(max(roll - at.by_profile / at.bend, own.begin), own.end) - roll
+        gap = at.gap + at.by_profile * step + 0.5 * at.bend * step * step
+        roll, profile, face = roll + step, at.profile, at.face
+    return Lowest(gap, roll, z, profile, face)
 
 
 @variant(begun, DeviatedHelicalTooth)
 def deviated_screw_begun(
     deviated_tooth: DeviatedHelicalTooth, mate: DeviatedHelicalTooth, pose: Pose, facing: Facing, roll: float, z: float
 ) -> Start:
-    """The lowest of several places on the contact line: its ends, and of forms the heights at which the gap is least.
+    """The lower end of the contact line; the start stays where there is none.
 
-    The line is that on which the flanks of both gears lie; where there is none the start stays.
+    Along the line on which the flanks of both gears lie all offsets and leans are straight.
     """
     own = deviated_tooth
     lean, mate_lean = leaning(own, facing.sigma), leaning(mate, facing.sigma)
     roll, z = started(own, lean, roll, z)
-    best, start = Lowest(math.inf, roll, z, 0.0, 0.0), roll
-    profile, face = 0.0, 0.0
-    for _ in range(ACROSS):  # to the line of the involutes
-        at = foot(plain_screw(own), plain_screw(mate), pose, facing, start, z)
-        start -= at.by_profile / at.bend
-        profile, face = at.profile, at.face
-    start += lean * z
-    low, high = max(own.low, z + mate.low - face), min(own.high, z + mate.high - face)
+    here = lowest_at(own, mate, pose, facing, roll, z)
+    start, best = here.roll + lean * z, Lowest(math.inf, roll, z, 0.0, 0.0)
+    low, high = max(own.low, z + mate.low - here.face), min(own.high, z + mate.high - here.face)
     low, high = between(low, high, start, lean, own.begin, own.end)
-    low, high = between(low, high, profile + mate_lean * z, mate_lean, mate.begin, mate.end)
-    count, long = 2, max(high - low, 0.0)
-    if own.form != 0.0 or mate.form != 0.0:
-        count = FEWEST + int(PER_WAVE * (waves_along(own, long) + waves_along(mate, long)))
-    step, k, at_vertex = long / (count - 1), 0, False
-    z, one, other = low, math.inf, math.inf  # gaps at the two heights before
-    while k < count and low <= high:
-        here = lowest_at(own, mate, pose, facing, start - lean * z, z)
+    low, high = between(low, high, here.profile + mate_lean * z, mate_lean, mate.begin, mate.end)
+    for k in range(2 if low <= high else 0):
+        end = low if k == 0 else high
+        here = lowest_at(own, mate, pose, facing, start - lean * end, end)
         if here.gap < best.gap:
             best = here
-        if not at_vertex:
-            first, one, other = one, other, here.gap
-            if one < first and one <= other and first < math.inf:  # the height before is lower than both beside it
-                at_vertex = True
-                z = low + (k - 1) * step + 0.5 * step * (first - other) / (first - 2.0 * one + other)
-                continue
-        at_vertex = False
-        k += 1
-        z = low + k * step
-    known = best.gap < math.inf
-    return Start(best.roll, best.z, best.profile, best.face, known, best.gap, step if count > 2 else math.inf)
+    return Start(best.roll, best.z, best.profile, best.face, best.gap < math.inf)

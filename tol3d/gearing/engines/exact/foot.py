@@ -151,7 +151,7 @@ def middle_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> fl
 
 def as_given(own: Any, mate: Any, pose: Any, facing: Facing, profile: float, face: float) -> Start:
     """The start itself."""
-    return Start(profile, face, 0.0, 0.0, False, math.inf, math.inf)
+    return Start(profile, face, 0.0, 0.0, False)
 
 
 def no_promise(own: Any, mate: Any, pose: Any, sigma: float, start: float, apart: float) -> tuple[float, float]:

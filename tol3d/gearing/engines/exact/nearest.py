@@ -17,7 +17,6 @@ SHARP_FALL = 1e-14  # mm; for points and normals too
 END = 1e-9  # mm; a foot so near to an end of the face is at it
 SHORT = 1e-3  # mm; of a last step along the face
 LEVEL = 1e-13  # fall per length along a generator that is no more than rounding
-LOST = 1e-6  # mm; a last step that lowers the gap by more led nowhere: forms may bend more than the involute does
 FLAT = 1e-15  # 1/mm; bow of the gap along the face that is no more than rounding
 
 
@@ -70,14 +69,7 @@ def slanted(
 
 @part
 def lowest(
-    own: Any,
-    mate: Any,
-    pose: Pose,
-    facing: Facing,
-    place: tuple[float, float],
-    radius: float,
-    per_turn: float,
-    last_fall: float,
+    own: Any, mate: Any, pose: Pose, facing: Facing, start: float, face: float, per_turn: float, last_fall: float
 ) -> tuple[Foot, float, float, float, bool]:
     """The lowest gap over own flank, and where: (foot, last fall, profile, face, whether the faces overlap).
 
@@ -85,13 +77,12 @@ def lowest(
         own, mate: the gears' teeth; of `own`, low and high bound the search along the face.
         pose: mate from own.
         facing: which flanks.
-        place: (profile, face) where to start on `own`.
-        radius: largest first step along the face [mm], halved from step to step.
+        start, face: where to start on `own`.
         per_turn: 1 to look for the smallest turn of the mate, 0 for the smallest gap.
         last_fall: [mm], a step that lowers the gap by less is the last; it is not looked at again.
     """
     lean = leaning(own, facing.sigma)
-    profile, face = started(own, lean, place[0], place[1])
+    profile, face = started(own, lean, start, face)
     fall, steps = 0.0, STEPS
     while True:
         at = foot(own, mate, pose, facing, profile, face)
@@ -100,9 +91,6 @@ def lowest(
         low, high = max(own.low, face + mate.low - there), min(own.high, face + mate.high - there)
         if low > high:
             return at, fall, profile, face, False
-        if lean != 0.0:
-            near, far = min(max(low, face - radius), high), max(min(high, face + radius), low)
-            low, high, radius = near, far, 0.5 * radius
         by_face = at.by_face - per_turn * at.gap * at.nearness
         per_bend = 1.0 / at.bend
         slope = by_face - at.twist * at.by_profile * per_bend
@@ -151,9 +139,7 @@ def nearest(
     if straight.how != NOWHERE:
         return straight
     first = begun(own, mate, pose, facing, start, face)
-    at, fall, profile, face, overlap = lowest(
-        own, mate, pose, facing, (first.profile, first.face), first.radius, per_turn, last_fall
-    )
+    at, fall, profile, face, overlap = lowest(own, mate, pose, facing, first.profile, first.face, per_turn, last_fall)
     offset = facing.offset
     lean = (at.gap + offset) * at.nearness * at.nearness
     if not overlap:
@@ -161,8 +147,7 @@ def nearest(
     # where the mate's face ends, its edge is nearest to own flank: to second order the gap is the same, not the normal
     inside = own.low < face < own.high and own.begin < profile < own.end
     face_ends = last_fall <= SHARP_FALL and inside and not mate.low + END < at.face < mate.high - END
-    lost = first.known and (abs(fall) > LOST or at.gap > first.gap + LOST)
-    if mate.begin <= at.profile <= mate.end and not face_ends and not lost:
+    if mate.begin <= at.profile <= mate.end and not face_ends:
         gap = at.gap + fall
         turn = turn_to(mate, gap, offset, at)
         how = CLOSED if mate.begin <= at.touching <= mate.end else AT_EDGE
@@ -176,13 +161,11 @@ def nearest(
     if first.known:
         edge, edge_face = first.mate_profile, first.mate_face
     back = Facing(facing.mate_azimuth, facing.own_azimuth, facing.sigma, offset)
-    its, its_fall, its_own, _, overlap = lowest(
-        mate, own, inverse(pose), back, (edge, edge_face), first.radius, per_turn, last_fall
-    )
+    its, its_fall, its_own, _, overlap = lowest(mate, own, inverse(pose), back, edge, edge_face, per_turn, last_fall)
     if not overlap:
         return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, False, lean)
     how = AT_EDGE if own.begin < its.profile <= own.end and at.profile >= mate.begin else BEYOND
-    if first.known and (lost or how == BEYOND or abs(its_fall) > LOST or its.gap > first.gap + LOST):
+    if first.known and how == BEYOND:  # both searches left the other's flank: the lowest place on both of them stays
         at = foot(own, mate, pose, facing, first.profile, first.face)
         turn, at_end = turn_to(mate, at.gap, offset, at), not own.begin < first.profile < own.end
         return Nearest(

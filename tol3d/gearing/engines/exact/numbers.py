@@ -111,8 +111,6 @@ class Start(NamedTuple):
         profile, face: of own flank.
         mate_profile, mate_face: of its foot on the mate.
         known: True if both flanks reach there, and it is the lowest of all such places to about the last step.
-        gap: there [mm].
-        radius: how far from there the lowest place may be [mm] along the face; steps are halved from that on.
     """
 
     profile: float
@@ -120,8 +118,6 @@ class Start(NamedTuple):
     mate_profile: float
     mate_face: float
     known: bool
-    gap: float
-    radius: float
 
 
 class PairNumbers(NamedTuple):

@@ -13,7 +13,7 @@ import math
 from abc import abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 from typing_extensions import override
@@ -22,6 +22,7 @@ from tol3d.errors import GeometryError, InputError
 from tol3d.files import Files
 from tol3d.gearing.draws.pitch_draw import GivenDraw, tooth_names
 from tol3d.gearing.effects import FORM, HELIX, SLOPE, FlankDeviation, Place
+from tol3d.gearing.grammar.parts import SpurGearSpec
 from tol3d.gearing.grammar.tolerances.flank_tolerance import (
     OF_CLASSES,
     FlankToleranceSpec,
@@ -33,6 +34,7 @@ from tol3d.gearing.grammar.tolerances.flank_tolerance import (
 from tol3d.gears import SpurGear
 from tol3d.gears.iso1328 import FlankTolerances
 from tol3d.scene.bases import Length, scaled_law
+from tol3d.scene.entry import Entry
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.statistics.distributions import Distribution, Normal, StatedDistribution, Uniform
@@ -322,8 +324,11 @@ class ProfileFormSpec(FlankShapeSpec):
     """f_falpha, a length from peak to valley of a stated shape over the whole involute; negative turns it inside out.
 
     With u from -1/2 to 1/2 over the evaluation range, in the roll: a barrel is 1/3 - 4 u^2 of it, waves are
-    cos(2 pi waves u)/2. Both go on beyond the range.
+    cos(2 pi waves u)/2. Both go on beyond the range. Of spur gears only: contact lines of helical ones run across the
+    profile, along which forms were not derived.
     """
+
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (SpurGearSpec,)
 
     kind: Literal["profile_form"]
     shape: Literal["barrel", "wave"] = Field(description="a barrel, or cosine waves")
