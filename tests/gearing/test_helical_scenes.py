@@ -283,7 +283,8 @@ def test_rings_that_do_not_mesh_are_refused(ring_scene: Scene, changed: dict[str
     [
         (
             "tolerances",
-            "p: {kind: pitch_deviation, of: wheel, flanks: each, limits: {iso_class: 6}, law: {kind: normal, cpk: 1}}",
+            "p: {kind: profile_form, of: wheel, flanks: each, each: tooth, shape: barrel, limits: {iso_class: 6},\n"
+            "    law: {kind: uniform}}",
             "tolerances.p.of: expected the name of a spur gear",
         ),
         (

@@ -127,7 +127,7 @@ def test_single_flanks_are_refused_beside_a_ring(tmp_path: Path) -> None:
     walk = "limits: {iso_class: 6}, law: {kind: random_walk, fill: [0.7, 1]}"
     for gear, words in (
         ("inner", "expected a gear that meshes with external gears only, got 'inner', which meshes with the internal"),
-        ("ring", "expected the name of a spur gear, got 'ring', which is an internal gear"),
+        ("ring", "expected the name of a spur gear or a helical gear, got 'ring', which is an internal gear"),
     ):
         tolerance = f"tolerances:\n  teeth: {{kind: pitch_deviation, of: {gear}, flanks: each, {walk}}}\n"
         with pytest.raises(SceneError, match=words):

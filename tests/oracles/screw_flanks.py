@@ -13,6 +13,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+Deviation = Callable[[int, int, Array, Array], Array]
+"""Offset [mm] out of the tooth in the transverse section, along the tangent of the base circle.
+
+Of tooth, side (1 right, -1 left), rolls [rad] and heights [mm].
+"""
+
+
+def no_deviation(tooth: int, side: int, roll: Array, z: Array) -> Array:
+    """None."""
+    return np.zeros(np.broadcast_shapes(roll.shape, z.shape))
+
+
 GOLDEN = (math.sqrt(5.0) - 1) / 2
 GRID, ROUNDS, SHRINK = 41, 14, 0.2  # points a side; a grid reaches 0.4 of the one before, the last 4e-6 of the first
 
@@ -34,6 +46,7 @@ class ScrewGear:
     thinner: float = 0.0
     addendum: float = 1.0
     inside: bool = False
+    deviation: Deviation = no_deviation
 
     @property
     def out(self) -> int:
@@ -78,9 +91,30 @@ class ScrewGear:
         first, second = (own - np.arctan(own) for own in inv)
         return np.asarray(at_reference + self.out * (first - second))
 
+    def before(self, radius: Array, z: Array, side: int, tooth: int) -> Array:
+        """Radius [mm] of the point without deviation that came to a radius and height along its tangent."""
+        if self.deviation is no_deviation:
+            return radius
+        roll = np.sqrt(np.maximum((radius / self.base) ** 2 - 1, 0.0)) - self.further(radius, z, side, tooth)
+        return np.asarray(np.where(roll > 0.0, self.base * np.hypot(1.0, roll), 0.0))
+
+    def further(self, radius: Array, z: Array, side: int, tooth: int) -> Array:
+        """Angle [rad] by which a flank stands out of its tooth: along the base tangent an involute comes to one turned.
+
+        There it is as much further on the tangent as the deviation of the point from which it came.
+        """
+        roll, angle = np.sqrt(np.maximum((radius / self.base) ** 2 - 1, 0.0)), np.zeros(1)
+        for _ in range(1 if self.deviation is no_deviation else 4):
+            angle = self.deviation(tooth % self.teeth, side, roll - angle, z) / self.base
+        return angle
+
     def points(self, radius: Array, z: Array, side: int, tooth: int, turn: float) -> Array:
         """Points (..., 3) [mm] of a flank; side 1 is the right one, on the low-azimuth side of its tooth."""
-        azimuth = turn + 2 * math.pi * tooth / self.teeth + self.twist * z - side * self.half_angle(radius)
+        roll = np.sqrt(np.maximum((radius / self.base) ** 2 - 1, 0.0))
+        off = self.deviation(tooth % self.teeth, side, roll, z) / self.base
+        radius = self.base * np.hypot(1.0, roll + off) if self.deviation is not no_deviation else radius
+        half = self.half_angle(radius) + off
+        azimuth = turn + 2 * math.pi * tooth / self.teeth + self.twist * z - side * half
         return np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z], axis=-1)
 
 
@@ -112,6 +146,15 @@ def lag(driver: Placed, driven: Placed, turns: tuple[float, float], side: int, t
     A point of one flank is that arc off the other one of the same height; below 0 they overlap. Flanks of the driven
     gear end at its tip and at both ends of its face. Where one is a ring, its flank is the one of the other side.
     """
+    gear = driver.gear
+    low, high = gear.ends
+    return least(lag_at(driver, driven, turns, side, teeth), (low, -gear.face / 2), (high, gear.face / 2))
+
+
+def lag_at(
+    driver: Placed, driven: Placed, turns: tuple[float, float], side: int, teeth: tuple[int, int]
+) -> Callable[[Array, Array], Array]:
+    """The same arc for a point of the driver's flank, by its radius and height."""
     gear, mate = driver.gear, driven.gear
     mating = side * gear.out * mate.out
 
@@ -121,13 +164,50 @@ def lag(driver: Placed, driven: Placed, turns: tuple[float, float], side: int, t
         azimuth = np.arctan2(points[..., 1], points[..., 0])
         middle = turns[1] + 2 * math.pi * teeth[1] / mate.teeth + mate.twist * points[..., 2]
         off = np.remainder(azimuth - middle + math.pi, 2 * math.pi) - math.pi
-        found = mate.base * (-mating * off - mate.half_angle(rho))
+        half = mate.half_angle(rho) + mate.further(rho, points[..., 2], side, teeth[1])
+        found = mate.base * (-mating * off - half)
+        own = mate.before(rho, points[..., 2], side, teeth[1])
         first, last = (mate.tip, mate.ends[1]) if mate.inside else (mate.base, mate.tip)
-        outside = (rho > last) | (rho < first) | (np.abs(points[..., 2]) > mate.face / 2)
+        outside = (own > last) | (own < first) | (np.abs(points[..., 2]) > mate.face / 2)
         return np.where(outside, np.inf, found)
 
-    low, high = gear.ends
-    return least(apart, (low, -gear.face / 2), (high, gear.face / 2))
+    return apart
+
+
+SLICES = 161  # across a face, in which a form of some waves shows
+LOWEST = 4  # least slices whose neighbourhood is looked at again
+AGAIN = 4  # times, each a twentieth as wide
+
+
+def lag_in_slices(
+    driver: Placed, driven: Placed, turns: tuple[float, float], side: int, teeth: tuple[int, int]
+) -> float:
+    """As `lag`, slice by slice: of flanks whose forms may be nearest at several heights."""
+    apart, gear = lag_at(driver, driven, turns, side, teeth), driver.gear
+    half = gear.face / 2
+
+    def of_slices(z: Array) -> Array:
+        first, last = np.full((len(z), 1), gear.base * 1.0001), np.full((len(z), 1), gear.tip)
+        best = np.full(len(z), np.inf)
+        for _ in range(ROUNDS):
+            radius = first + (last - first) * np.linspace(0.0, 1.0, GRID)
+            values = apart(radius, np.broadcast_to(z[:, None], radius.shape))
+            best = np.minimum(best, values.min(axis=1))
+            middle, reach = np.take_along_axis(radius, values.argmin(axis=1)[:, None], axis=1), (last - first) * SHRINK
+            first, last = np.maximum(middle - reach, gear.base * 1.0001), np.minimum(middle + reach, gear.tip)
+        return best
+
+    heights, step = np.linspace(-half, half, SLICES), gear.face / (SLICES - 1)
+    values = of_slices(heights)
+    lowest = [k for k in range(SLICES) if values[k] <= values[max(k - 1, 0) : k + 2].min() < np.inf]
+    found = math.inf
+    for k in sorted(lowest, key=lambda own: float(values[own]))[:LOWEST]:
+        middle, reach = heights[k], step
+        for _ in range(AGAIN):
+            near = np.clip(np.linspace(middle - reach, middle + reach, GRID), -half, half)
+            own = of_slices(near)
+            middle, reach, found = near[own.argmin()], reach / 20 * 1.5, min(found, float(own.min()))
+    return found
 
 
 def caliper(gear: ScrewGear, teeth: int, reach: float) -> float:

@@ -19,6 +19,7 @@ TEETH: Final = (5, 1000)
 DIAMETER: Final = (5.0, 15000.0)  # mm, of the reference circle
 MODULE: Final = (0.5, 70.0)  # mm
 FACE_WIDTH: Final = (4.0, 1200.0)  # mm
+HELIX_ANGLE: Final = (0.0, 45.0)  # deg
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,10 @@ class FlankTolerances:
     helix_slope: float
 
 
-def flank_tolerances(tolerance_class: int, teeth: int, module: float, face_width: float) -> FlankTolerances:
-    """Limits of a spur gear of a flank tolerance class, rounded as the standard has it.
+def flank_tolerances(
+    tolerance_class: int, teeth: int, module: float, face_width: float, helix_angle: float = 0.0
+) -> FlankTolerances:
+    """Limits of a spur or helical gear of a flank tolerance class, rounded as the standard has it.
 
     f_pT = (0.001 d + 0.4 m + 5) q, F_pT = (0.002 d + 0.55 sqrt d + 0.7 m + 12) q, f_HalphaT = (0.4 m + 0.001 d + 4) q,
     f_falphaT = (0.55 m + 5) q, f_HbetaT = (0.05 sqrt d + 0.35 sqrt b + 4) q, with q = sqrt(2)^(class - 5).
@@ -49,8 +52,9 @@ def flank_tolerances(tolerance_class: int, teeth: int, module: float, face_width
     Args:
         tolerance_class: A, 1 to 11.
         teeth: z, 5 to 1000.
-        module: m [mm], 0.5 to 70; the reference diameter d = m z is 5 to 15 000 mm.
+        module: m [mm], 0.5 to 70, the normal module; the reference diameter d = m z/cos(beta) is 5 to 15 000 mm.
         face_width: b [mm], 4 to 1200.
+        helix_angle: beta [rad], up to 45 deg.
 
     Raises:
         GeometryError: the gear lies outside the ranges, beyond which the standard forbids to extrapolate.
@@ -59,13 +63,14 @@ def flank_tolerances(tolerance_class: int, teeth: int, module: float, face_width
     >>> round(wheel.single_pitch, 6), round(wheel.cumulative_pitch, 6)
     (0.009, 0.029)
     """
-    diameter = module * teeth
+    diameter = module * teeth / math.cos(helix_angle)
     for words, value, (low, high), unit in (
         ("class", tolerance_class, CLASSES, ""),
         ("teeth", teeth, TEETH, ""),
         ("reference diameter", diameter, DIAMETER, " mm"),
         ("module", module, MODULE, " mm"),
         ("face width", face_width, FACE_WIDTH, " mm"),
+        ("helix angle", math.degrees(helix_angle), HELIX_ANGLE, " deg"),
     ):
         if not low <= value <= high:
             raise GeometryError(

@@ -86,7 +86,7 @@ class SpurGear(CylindricalGear):
             raise GeometryError(
                 f"pointed teeth: the tooth thickness at the tip circle ({self.tip_diameter:.4f} mm) is "
                 f"{self.tip_thickness:.4f} mm; flanks meet at {2 * self.pointed_radius:.4f} mm: "
-                "lower addendum or profile_shift"
+                f"lower addendum below {self._pointed_addendum:.4f}, or profile_shift"
             )
         if not 0.0 <= self.bore < self.root_diameter:
             raise GeometryError(
@@ -112,6 +112,11 @@ class SpurGear(CylindricalGear):
             middle = (low + high) / 2
             low, high = (middle, high) if involute(middle) < from_angle else (low, middle)
         return self.base_radius / math.cos(low)
+
+    @property
+    def _pointed_addendum(self) -> float:
+        """Addendum whose tip circle is where both flanks of a tooth would meet."""
+        return (self.pointed_radius - self.reference_radius) / self.module - self.profile_shift
 
     @cached_property
     def form_roll(self) -> float:

@@ -26,7 +26,7 @@ from tol3d.gearing.builds.flank_offsets import FlankPlaces, flank_slot
 from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
 from tol3d.gearing.engines.gaps import Gaps, Teeth
 from tol3d.gearing.model import Mesh, Model
-from tol3d.gears import Flank
+from tol3d.gears import Flank, SpurGear
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array
 
@@ -66,13 +66,23 @@ class DeviatedStrips:
         strips = self.strips[gear]
         if not any(numbers):
             return strips
-        roll = strips.parameter
         begin, end = self.places.spans[gear]
+        own, normals = self.model.gear(gear).gear, strips.normals[flank]
+        if isinstance(own, SpurGear) and own.helix_angle:
+            # along a generator roll and height change: each end is moved by what it is there, a straight change
+            moved = []
+            for ends in (strips.inner, strips.outer):
+                points = ends[flank]
+                rolls = np.sqrt(np.maximum((points[:, 0] ** 2 + points[:, 1] ** 2) / own.base_radius**2 - 1, 0.0))
+                out = numbers[UNIFORM] + numbers[SLOPE] * (rolls - (begin + end) / 2) / (end - begin)
+                out = out + numbers[HELIX] * points[:, 2] / own.face_width
+                moved.append({**ends, flank: points + out[:, None] * normals})
+            return replace(strips, inner=moved[0], outer=moved[1])
+        roll = strips.parameter
         u = (roll - (begin + end) / 2) / (end - begin)
         waves = self.places.waves[gear]
         form = np.cos(2 * math.pi * waves * u) / 2 if waves else 1 / 3 - 4 * u * u
         level = numbers[UNIFORM] + numbers[SLOPE] * u + numbers[FORM] * form
-        normals = strips.normals[flank]
         inner, outer = (
             {**ends, flank: ends[flank] + (level + sense * numbers[HELIX] / 2)[:, None] * normals}
             for ends, sense in ((strips.inner, -1.0), (strips.outer, 1.0))

@@ -24,17 +24,17 @@ def standing_out(pair: GearPair, margin: float) -> float:
     """Excess of a flank over its neighbours [mm] up to which it touches nowhere beyond a margin [pitches].
 
     Where the path of contact ends, a tip edge leaves its mate by s^2 rho T/(2 r_b^2 rho_m), s the arc on the base
-    circle by which the gears have turned on, rho and rho_m the radii of curvature of tip and mate, T = rho + rho_m.
+    circle by which the gears have turned on, rho and rho_m the radii of curvature of tip and mate, T = rho + rho_m,
+    in the transverse section.
     """
     tangent = sum(pair.working_radii) * math.sin(pair.working_pressure_angle)
-    turned = margin * pair.pinion.base_pitch
     found = math.inf
     for gear in (pair.pinion, pair.wheel):
         if not isinstance(gear, SpurGear):
-            raise TypeError("single flanks deviate of spur gears only")
-        tip = gear.base_radius * gear.tip_roll
+            raise TypeError("single flanks deviate of external cylindrical gears only")
+        tip, turned = gear.base_radius * gear.tip_roll, margin * gear.transverse_base_pitch
         found = min(found, turned**2 * tip * tangent / (2 * gear.base_radius**2 * (tangent - tip)))
-    return found
+    return found * pair.base_helix_cosine
 
 
 def margin_of(model: Model, mesh: Mesh) -> float:

@@ -21,7 +21,9 @@ from tol3d.gears import (
 )
 from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.cylindrical_pair import CylindricalPair, crossed_axes
+from tol3d.gears.remedies import remedy
 from tol3d.scene import Scene
+from tol3d.scene.place import KeyPath
 from tol3d.units import Quantity
 
 
@@ -66,11 +68,15 @@ def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
         raise scene.refuse(("moves", name), words)
     if crossed := crossed_axes(pinion, wheel):
         raise scene.refuse(("moves", name, "driven"), crossed)
+    path: KeyPath = ("moves", name, "centre_distance")
     try:
         pair = cylindrical_pair(pinion, wheel, move.centre_distance.internal)
+    except GeometryError as error:
+        raise scene.refuse(path, str(error)) from None
+    try:
         pair.refuse_interference()
     except GeometryError as error:
-        raise scene.refuse(("moves", name, "centre_distance"), str(error)) from None
+        raise scene.refuse(path, f"{error}{remedy(pair) if isinstance(pair, SpurPair) else ''}") from None
     return pair
 
 

@@ -10,7 +10,8 @@ import numpy as np
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.stack_up.contact_lines import ContactLines, lost
 from tol3d.gearing.stack_up.stack import Stack
-from tol3d.gearing.stack_up.term import Bound, Neglect, Term
+from tol3d.gearing.stack_up.term import Bound, Neglect, Role, Term
+from tol3d.gearing.stack_up.tooth_pairs import lines_alone
 from tol3d.gears import InternalPair, SpurPair
 from tol3d.numerics.arrays import Array
 
@@ -80,8 +81,47 @@ class HelicalStack(SpurStack):
     ) -> None:
         super().__init__(model, mesh, pair, reading)
         self._lines = ContactLines(pair)
+        if isinstance(pair, SpurPair) and self.teeth is None and any(self._apart_by_growth):
+            self.teeth = lines_alone(model, mesh, pair, reading)
         step = pair.pinion.angular_pitch / POSITIONS_OF_A_PITCH
         self._at = [k * step for k in range(POSITIONS_OF_A_PITCH)] if at is None else at
+
+    @property
+    def neglects(self) -> tuple[Neglect, ...]:
+        """None of external gears: base pitches that grow apart and the growth of the nominal backlash are in the sum."""
+        return () if isinstance(self.pair, SpurPair) else super().neglects
+
+    @property
+    def _apart_by_growth(self) -> Sequence[float]:
+        """Strain of the driven gear less that of the driver by each contributor that warms them [1/K]."""
+        found = dict.fromkeys((own.contributor.name for own in self._strains), 0.0)
+        for part, sign in ((self.mesh.driver, -1.0), (self.mesh.driven, 1.0)):
+            for term in self._growth(part):
+                found[term.contributor.name] += sign * term.coefficient
+        return tuple(found.values())
+
+    @property
+    def _strains(self) -> Sequence[Term]:
+        return [*self._growth(self.mesh.driver), *self._growth(self.mesh.driven)]
+
+    def _strain(self, part: str, deviations: Array) -> Array:
+        """Strain of a gear (rows,) by deviations (rows, components)."""
+        total, at_rest = np.zeros(len(deviations)), (np.zeros(1), np.zeros(1))
+        for term in self._growth(part):
+            total += term.change(deviations[:, self.model.component_slices[term.contributor.name]], at_rest)
+        return total
+
+    def normal_backlash(self, deviations: Array, driver_angle: Array, turns: Role | None = None) -> Array:
+        """As of spur gears; of external gears the nominal backlash grows with the driven one."""
+        found = super().normal_backlash(deviations, driver_angle, turns)
+        if isinstance(self.pair, SpurPair) and self._strains:
+            found = found + self.nominal * self._strain(self.mesh.driven, deviations)
+        return found
+
+    def _leans(self, deviations: Array) -> Mapping[int, Array]:
+        """With the strain of the driven gear less that of the driver, (rows, 2)."""
+        strain = self._strain(self.mesh.driven, deviations) - self._strain(self.mesh.driver, deviations)
+        return {side: np.stack([lean, strain], axis=-1) for side, lean in super()._leans(deviations).items()}
 
     def lost(self, in_plane: Array, across: Array, driver_angle: Array | None = None) -> Array:
         """As of spur gears, on the contact lines at the driver's turns [rad] (rows,); averaged where None is given."""
@@ -107,11 +147,13 @@ class HelicalStack(SpurStack):
 
     @property
     def turns_by_teeth(self) -> bool:
-        """True if axes lean."""
-        return any(term.leans for term in self.terms)
+        """True if single flanks deviate, or axes lean."""
+        return self.teeth is not None or any(term.leans for term in self.terms)
 
     def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
         """As of single flanks: the pair of leaning axes that touches first, (trials, positions) [mm at the arm]."""
+        if self.teeth:
+            return super().turned_by_teeth(side, deviations, driver_angle)
         in_plane, across = self._lost_by_tilts(deviations)
         return self.sense * side * lost((in_plane + side * across)[:, None] / 2, self._lines.ends(side, driver_angle))
 

@@ -1,10 +1,12 @@
-"""Loss of each flank side of a spur pair by flanks that deviate one by one: the pair that stands out most touches.
+"""Loss of each flank side of a pair by flanks that deviate one by one: the pair that stands out most touches.
 
 On the tangent of both base circles, T = a sin(alpha_w) long, a pair of flanks touches r_b1 t_1 from its one end and
 r_b2 t_2 = T - r_b1 t_1 from the other; t_1 falls by as much as the driver's tooth goes on. To first order each pair
 loses the sum of both flank offsets there, with parallel axes at the end of the common face where the sum is larger.
 Beyond the path of contact the tip edge of one gear may still touch first, where its pair stands out by
 more than the edge has left the mate's flank.
+
+Of helical gears that holds slice by slice, and a pair loses what the slice on its contact line loses that loses most.
 
 Neglected: effects of the curvature of a deviation. Axes that move take the path of contact along, to first order.
 """
@@ -34,7 +36,8 @@ NUMBERS_AT_ONCE: Final = 4_000_000
 """Deviations of rows that are held at once: 32 MB."""
 
 KERNELS: Final = "tol3d.gearing.stack_up.tooth_kernels"
-"""Lazy import: it loads the compiler of kernels, which stack-ups of other gears do not need."""
+LINE_KERNELS: Final = "tol3d.gearing.stack_up.line_kernels"
+"""Lazy imports: they load the compiler of kernels, which stack-ups of other gears do not need."""
 
 WHO_TURNS: Final[Mapping[Role | None, int]] = {None: 0, "driven": 1, "driver": 2}
 """In the words of tooth_kernels."""
@@ -105,6 +108,10 @@ class BuiltTeeth:
     driven: Array
     trial: Integers
 
+    def in_section(self, cosine: float) -> tuple[Array, Array, Integers]:
+        """The same along the line of action of a transverse section, of which `cosine` lies along the normals."""
+        return self.driver / cosine, self.driven / cosine, self.trial
+
 
 class Moved(NamedTuple):
     """Axes and flanks of a mesh that do not stand at their nominal places, (rows,) each.
@@ -122,7 +129,7 @@ class Moved(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ToothPairs:
-    """The pairs of flanks of a mesh of spur gears, at least one of which has flanks that deviate one by one.
+    """The pairs of flanks of a mesh of spur or helical gears, at least one of which has flanks that deviate one by one.
 
     `beyond` is how far beyond the path of contact pairs are looked at [pitches].
     """
@@ -154,7 +161,8 @@ class ToothPairs:
             side: 1 where the driver's right flanks touch, -1 where its left ones do.
             built: their trials.
             driver_angle: (rows,) [rad].
-            lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm].
+            lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm]; of helical gears
+                (trials, 2), with the strain of the driven gear less that of the driver.
             moved: axes and flanks off their nominal places; None if none is.
             turns: the gear that turns until the side touches; None reads its gap as the gears stand.
             apart: by which the side stands open before [mm], (rows,), where anything but the driven gear turns.
@@ -164,13 +172,26 @@ class ToothPairs:
         start = self.pair.working_pressure_angle + first.base_half_angle
         teeth, count = self._teeth(side, driver_angle)
         places = (self.driver.ahead, self.driven.ahead, first.teeth, second.teeth)
-        found: Array = importlib.import_module(KERNELS).taken(
-            (self.driver.measures, self.driven.measures, (self._tangent, start, first.angular_pitch, half)),
+        line: tuple[float, ...] = (self._tangent, start, first.angular_pitch, half)
+        kernel, cosine = importlib.import_module(KERNELS).taken, self.pair.base_helix_cosine
+        if first.helix_angle:
+            fall = first.hand * math.tan(first.base_helix_angle) / half
+            up = first.hand * math.sin(first.base_helix_angle) * cosine
+            line = (*line, first.twist, fall, math.tan(self.pair.working_pressure_angle), cosine**2, up)
+            kernel = importlib.import_module(LINE_KERNELS).taken_on_lines
+        found: Array = kernel(
+            (self.driver.measures, self.driven.measures, line),
             (side, WHO_TURNS[turns], count, *places),
-            (built.driver, built.driven, built.trial),
-            (teeth, driver_angle, lean, np.zeros(0) if apart is None else apart, self._shifts(side, moved)),
+            (built.driver, built.driven, built.trial) if cosine == 1.0 else built.in_section(cosine),
+            (
+                teeth,
+                driver_angle,
+                lean / np.array([cosine, 1.0]) if first.helix_angle else lean,
+                np.zeros(0) if apart is None else apart / cosine,
+                self._shifts(side, moved),
+            ),
         )
-        return found
+        return found * cosine
 
     def _shifts(self, side: int, moved: Moved | None) -> Array:
         """Change by moved axes and flanks of a tooth's roll on the line of centres [rad] and of the tangent [mm].
@@ -207,8 +228,9 @@ class ToothPairs:
         if self.reading.teeth == "driven":
             return (side == 1) - np.rint(place + 0.5).astype(np.int64), 1
         working = self.pair.working_pressure_angle
-        last_psi = working + gear.base_half_angle - self._start_roll + self.beyond * gear.angular_pitch
-        length = gear.tip_roll - self._start_roll
+        leaning = abs(gear.twist) * self.pair.common_face / 2
+        last_psi = working + gear.base_half_angle - self._start_roll + leaning + self.beyond * gear.angular_pitch
+        length = gear.tip_roll - self._start_roll + 2 * leaning
         count = math.floor(length / gear.angular_pitch + 2 * self.beyond) + 1
         return side * np.floor(last_psi / gear.angular_pitch - side * place).astype(np.int64), count
 
@@ -232,6 +254,12 @@ def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None
     driver, driven = (_flanks(model, mesh, name, acting) for name in (mesh.driver, mesh.driven))
     beyond = CONTACT_MARGIN + margin_of(model, mesh)
     return ToothPairs(mesh.pair, reading, mesh.resting_flank(reading.flank), driver, driven, beyond)
+
+
+def lines_alone(model: Model, mesh: Mesh, pair: SpurPair, reading: Reading) -> ToothPairs:
+    """The pairs of flanks of a mesh whose gears grow apart, so that base pitches differ; no flank deviates."""
+    driver, driven = (_flanks(model, mesh, name, ()) for name in (mesh.driver, mesh.driven))
+    return ToothPairs(pair, reading, mesh.resting_flank(reading.flank), driver, driven, CONTACT_MARGIN)
 
 
 def teeth_deviate(model: Model, mesh: Mesh) -> bool:

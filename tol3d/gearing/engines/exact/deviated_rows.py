@@ -22,6 +22,7 @@ from tol3d.gearing.engines.exact.flank_contact import (
 from tol3d.gearing.engines.exact.foot import flank_of, section
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose, turned
 from tol3d.gearing.engines.exact.reach import within_reach
+from tol3d.gearing.engines.exact.rests import rest_row as every_rest_row
 from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, gap_row, looks_of, read_row, write_contact
 from tol3d.gearing.engines.exact.tooth_contact import Sight, Touch, edge_gap, height, most_out, sight, touch, wrapped
 from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
@@ -224,6 +225,34 @@ def rest_row(
         if fault == OK and sigma * (turned_on[1] - turned_on[0]) * arm < -FREE:
             fault = INTERFERES
         status[row, k] = fault
+
+
+def rest_all_deviated_rows(
+    pinion: Any,
+    wheel: Any,
+    pair: PairNumbers,
+    nominal: Pose,
+    which: Integers,
+    shafts: Array,
+    centre: Array,
+    flank_turn: Array,
+    flank_offset: Array,
+    scale: Array,
+    offsets: Array,
+    builds: Integers,
+    places: Integers,
+    driver_angles: Array,
+    rests: Array,
+    contact: Array,
+    teeth: Integers,
+    status: NDArray[np.int8],
+) -> None:
+    """As rest_deviated_rows, every position evaluated as usual."""
+    gears = (which[0], which[1])
+    for row in range(len(shafts)):
+        own = FlankOffsets(offsets[builds[row]], places)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, own)
+        every_rest_row(build, which, shafts, flank_offset, scale, row, driver_angles, rests, contact, teeth, status)
 
 
 def rest_deviated_rows(

@@ -9,8 +9,19 @@ from tol3d.gearing.builds.build import Build
 from tol3d.gearing.builds.flank_offsets import FlankPlaces
 from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
+from tol3d.gearing.engines.exact.deviated_helical import DeviatedHelicalTooth
 from tol3d.gearing.engines.exact.flank_contact import ALL_TEETH, DRIVEN_TOOTH, DRIVER_TOOTH
-from tol3d.gearing.engines.exact.kernels import PairKernels, deviated_gaps, deviated_read, deviated_rests, kernels_of
+from tol3d.gearing.engines.exact.helical import HelicalTooth
+from tol3d.gearing.engines.exact.kernels import (
+    PairKernels,
+    deviated_gaps,
+    deviated_helical_gaps,
+    deviated_helical_read,
+    deviated_helical_rests,
+    deviated_read,
+    deviated_rests,
+    kernels_of,
+)
 from tol3d.gearing.engines.exact.rows import CONTACT, DRIVEN_ANGLE, DRIVEN_TURN, DRIVER_TURN, GAP, READINGS
 from tol3d.gearing.engines.exact.spur import SpurTooth
 from tol3d.gearing.engines.gaps import Gaps, MeshReading
@@ -191,29 +202,31 @@ def _array(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
-    """Numbers and kernels of the pair of a mesh; of spur gears whose flanks deviate one by one their own variant."""
+    """Numbers and kernels of the pair of a mesh; where single flanks deviate, of their own variant."""
     alike = kernels_of(mesh.pair)
     if not flanks.acts_in(mesh.driver, mesh.driven):
         return alike
     pinion, wheel, numbers, nominal = alike.numbers
-    gears: tuple[tuple[str, SpurTooth], ...] = ((mesh.driver, pinion), (mesh.driven, wheel))
+    gears: tuple[tuple[str, SpurTooth | HelicalTooth], ...] = ((mesh.driver, pinion), (mesh.driven, wheel))
+    helical = isinstance(pinion, HelicalTooth)
     places: list[int] = []
-    teeth: list[DeviatedTooth] = []
+    teeth: list[Any] = []
     for name, own in gears:
         gear, seat = mesh.gear(name), model.seats[model.seat_index[mesh.name, name]]
         places += [flanks.starts.get(name, -1), gear.teeth, round(seat.ahead / gear.angular_pitch)]
         begin, end = flanks.spans.get(name, (own.begin, own.end))
         shape = ((begin + end) / 2, 1.0 / (end - begin), 1.0 / gear.face_width, flanks.waves.get(name, 0.0))
         each: tuple[float, ...] = (*own, 1.0, *shape, 0.0, 0.0, 0.0, 0.0)
-        teeth.append(DeviatedTooth(*each))
+        teeth.append((DeviatedHelicalTooth if helical else DeviatedTooth)(*each))
     margin = margin_of(model, mesh)
     beyond = margin * mesh.pair.pinion.angular_pitch
     numbers = numbers._replace(lowest=numbers.lowest - beyond, highest=numbers.highest + beyond)
+    own_kernels = (deviated_read, deviated_gaps, deviated_rests)
+    if helical:
+        own_kernels = (deviated_helical_read, deviated_helical_gaps, deviated_helical_rests)
     return PairKernels(
         (teeth[0], teeth[1], numbers, nominal),
-        deviated_read,
-        deviated_gaps,
-        deviated_rests,
+        *own_kernels,
         np.array(places, dtype=np.int64),
         standing_out(mesh.pair, margin),
     )

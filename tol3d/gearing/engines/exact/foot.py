@@ -6,7 +6,7 @@ The bodies here are never run: as a kernel is compiled for a kind of teeth, each
 import math
 from typing import Any
 
-from tol3d.gearing.engines.exact.numbers import Facing, Foot, Nearest
+from tol3d.gearing.engines.exact.numbers import Facing, Foot, Nearest, Start
 from tol3d.numerics.compiled import variant
 
 TURN = 2.0 * math.pi
@@ -104,6 +104,16 @@ def first_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> flo
     raise NotImplementedError
 
 
+def begun(own: Any, mate: Any, pose: Any, facing: Facing, profile: float, face: float) -> Start:
+    """Place on own flank at which Newton's search for the lowest gap begins; one variant a kind.
+
+    Args:
+        own, mate, pose, facing: as of `foot`.
+        profile, face: of the start.
+    """
+    raise NotImplementedError
+
+
 def promise(own: Any, mate: Any, pose: Any, sigma: float, start: float, apart: float) -> tuple[float, float]:
     """Order in which the pairs of one base pitch touch as axes lean, and its leeway; one variant a kind.
 
@@ -138,11 +148,17 @@ def straight(kind: type) -> None:
     variant(leaning, kind)(straight_leaning)
     variant(first_face, kind)(middle_face)
     variant(promise, kind)(no_promise)
+    variant(begun, kind)(as_given)
 
 
 def middle_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> float:
     """The middle."""
     return face
+
+
+def as_given(own: Any, mate: Any, pose: Any, facing: Facing, profile: float, face: float) -> Start:
+    """The start itself."""
+    return Start(profile, face, 0.0, 0.0, False)
 
 
 def no_promise(own: Any, mate: Any, pose: Any, sigma: float, start: float, apart: float) -> tuple[float, float]:

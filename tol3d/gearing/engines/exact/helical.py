@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 from tol3d.gearing.engines.exact.foot import (
     PER_TURN,
     TURN,
+    as_given,
+    begun,
     external,
     first_face,
     flank_of,
@@ -59,6 +61,7 @@ class HelicalTooth(NamedTuple):
 
 
 external(HelicalTooth)
+variant(begun, HelicalTooth)(as_given)
 
 
 @part

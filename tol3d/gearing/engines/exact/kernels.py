@@ -10,7 +10,13 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
-from tol3d.gearing.engines.exact.deviated_rows import gap_deviated_rows, read_deviated_rows, rest_deviated_rows
+from tol3d.gearing.engines.exact.deviated_helical import DeviatedHelicalTooth
+from tol3d.gearing.engines.exact.deviated_rows import (
+    gap_deviated_rows,
+    read_deviated_rows,
+    rest_all_deviated_rows,
+    rest_deviated_rows,
+)
 from tol3d.gearing.engines.exact.helical import HelicalTooth, InternalHelicalTooth
 from tol3d.gearing.engines.exact.internal import InternalTooth
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
@@ -36,6 +42,7 @@ READ_DEVIATED, GAPS_DEVIATED, REST_DEVIATED = (
 
 SPUR = (SpurTooth, SpurTooth, PairNumbers, Pose)
 DEVIATED = (DeviatedTooth, DeviatedTooth, PairNumbers, Pose)
+DEVIATED_HELICAL = (DeviatedHelicalTooth, DeviatedHelicalTooth, PairNumbers, Pose)
 HELICAL = (HelicalTooth, HelicalTooth, PairNumbers, Pose)
 INTERNAL = (InternalTooth, InternalTooth, PairNumbers, Pose)
 INTERNAL_HELICAL = (InternalHelicalTooth, InternalHelicalTooth, PairNumbers, Pose)
@@ -54,6 +61,9 @@ internal_helical_rests = Kernel(rest_rows, INTERNAL_HELICAL, REST)
 deviated_read = Kernel(read_deviated_rows, DEVIATED, READ_DEVIATED)
 deviated_gaps = Kernel(gap_deviated_rows, DEVIATED, GAPS_DEVIATED)
 deviated_rests = Kernel(rest_deviated_rows, DEVIATED, REST_DEVIATED)
+deviated_helical_read = Kernel(read_deviated_rows, DEVIATED_HELICAL, READ_DEVIATED)
+deviated_helical_gaps = Kernel(gap_deviated_rows, DEVIATED_HELICAL, GAPS_DEVIATED)
+deviated_helical_rests = Kernel(rest_all_deviated_rows, DEVIATED_HELICAL, REST_DEVIATED)
 
 
 @dataclass(frozen=True, eq=False)

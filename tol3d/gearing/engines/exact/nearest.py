@@ -7,7 +7,7 @@ needed of a kind of gears.
 import math
 from typing import Any
 
-from tol3d.gearing.engines.exact.foot import foot, leaning, line_of_action, turn_to
+from tol3d.gearing.engines.exact.foot import begun, foot, leaning, line_of_action, turn_to
 from tol3d.gearing.engines.exact.numbers import AT_EDGE, BEYOND, CLOSED, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.numerics.compiled import part
 
@@ -138,7 +138,8 @@ def nearest(
     straight = line_of_action(own, mate, pose, facing, face)
     if straight.how != NOWHERE:
         return straight
-    at, fall, profile, face, overlap = lowest(own, mate, pose, facing, start, face, per_turn, last_fall)
+    first = begun(own, mate, pose, facing, start, face)
+    at, fall, profile, face, overlap = lowest(own, mate, pose, facing, first.profile, first.face, per_turn, last_fall)
     offset = facing.offset
     lean = (at.gap + offset) * at.nearness * at.nearness
     if not overlap:
@@ -156,12 +157,20 @@ def nearest(
             how = BEYOND
         at_end = not own.begin < profile < own.end
         return Nearest(gap, turn, how, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, at_end, lean)
-    edge = min(max(at.profile, mate.begin), mate.end)
+    edge, edge_face = min(max(at.profile, mate.begin), mate.end), at.face
+    if first.known:
+        edge, edge_face = first.mate_profile, first.mate_face
     back = Facing(facing.mate_azimuth, facing.own_azimuth, facing.sigma, offset)
-    its, its_fall, its_own, _, overlap = lowest(mate, own, inverse(pose), back, edge, at.face, per_turn, last_fall)
+    its, its_fall, its_own, _, overlap = lowest(mate, own, inverse(pose), back, edge, edge_face, per_turn, last_fall)
     if not overlap:
         return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, False, lean)
     how = AT_EDGE if own.begin < its.profile <= own.end and at.profile >= mate.begin else BEYOND
+    if first.known and how == BEYOND:  # both searches left the other's flank: the lowest place on both of them stays
+        at = foot(own, mate, pose, facing, first.profile, first.face)
+        turn, at_end = turn_to(mate, at.gap, offset, at), not own.begin < first.profile < own.end
+        return Nearest(
+            at.gap, turn, AT_EDGE, first.profile, first.face, at.x, at.y, at.z, at.nx, at.ny, at.nz, at_end, 0.0
+        )
     # the foot on own flank, and the way from the mate's edge to it, in the mate's frame
     apart = its.gap + offset
     px, py, pz = its.x - apart * its.nx, its.y - apart * its.ny, its.z - apart * its.nz

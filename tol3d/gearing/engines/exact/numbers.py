@@ -104,6 +104,22 @@ class Nearest(NamedTuple):
     lean: float
 
 
+class Start(NamedTuple):
+    """Place at which the search for the nearest points of two flanks begins.
+
+    Args:
+        profile, face: of own flank.
+        mate_profile, mate_face: of its foot on the mate.
+        known: True if both flanks reach there, and it is the lowest of all such places to about the last step.
+    """
+
+    profile: float
+    face: float
+    mate_profile: float
+    mate_face: float
+    known: bool
+
+
 class PairNumbers(NamedTuple):
     """Which teeth may meet, and where.
 

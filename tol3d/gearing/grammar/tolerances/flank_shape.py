@@ -13,7 +13,7 @@ import math
 from abc import abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 from typing_extensions import override
@@ -22,6 +22,7 @@ from tol3d.errors import GeometryError, InputError
 from tol3d.files import Files
 from tol3d.gearing.draws.pitch_draw import GivenDraw, tooth_names
 from tol3d.gearing.effects import FORM, HELIX, SLOPE, FlankDeviation, Place
+from tol3d.gearing.grammar.parts import SpurGearSpec
 from tol3d.gearing.grammar.tolerances.flank_tolerance import (
     OF_CLASSES,
     FlankToleranceSpec,
@@ -33,6 +34,7 @@ from tol3d.gearing.grammar.tolerances.flank_tolerance import (
 from tol3d.gears import SpurGear
 from tol3d.gears.iso1328 import FlankTolerances
 from tol3d.scene.bases import Length, scaled_law
+from tol3d.scene.entry import Entry
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.statistics.distributions import Distribution, Normal, StatedDistribution, Uniform
@@ -176,7 +178,10 @@ ShapeLaw = Annotated[
 
 
 class FlankShapeSpec(FlankToleranceSpec):
-    """A deviation of the shape of single flanks of a spur gear."""
+    """A deviation of the shape of single flanks of a spur or helical gear.
+
+    Of a helical gear it is stated in the transverse section, along the tangent of the base circle.
+    """
 
     each: Literal["tooth", "gear"] = Field(
         description="tooth: every tooth has a deviation of its own; gear: all teeth of the gear have the same"
@@ -283,11 +288,11 @@ class FlankShapeSpec(FlankToleranceSpec):
         return GivenDraw(names, tuple(found), f"measured in {law.file}")
 
     def places(self, gear: SpurGear) -> tuple[tuple[Place, ...], ...]:
-        """The flanks that each of its components moves."""
-        teeth = range(gear.teeth)
+        """The flanks that each of its components moves, by cos(beta_b) of it along their normals."""
+        teeth, cosine = range(gear.teeth), gear.base_helix_cosine
         groups = [[tooth] for tooth in teeth] if self.each == "tooth" else [list(teeth)]
         return tuple(
-            tuple(Place(tooth, flank, 1.0) for tooth in group for flank in self.flanks_of(side))
+            tuple(Place(tooth, flank, cosine) for tooth in group for flank in self.flanks_of(side))
             for side in self.sides
             for group in groups
         )
@@ -319,8 +324,11 @@ class ProfileFormSpec(FlankShapeSpec):
     """f_falpha, a length from peak to valley of a stated shape over the whole involute; negative turns it inside out.
 
     With u from -1/2 to 1/2 over the evaluation range, in the roll: a barrel is 1/3 - 4 u^2 of it, waves are
-    cos(2 pi waves u)/2. Both go on beyond the range.
+    cos(2 pi waves u)/2. Both go on beyond the range. Of spur gears only: contact lines of helical ones run across the
+    profile, along which forms were not derived.
     """
+
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (SpurGearSpec,)
 
     kind: Literal["profile_form"]
     shape: Literal["barrel", "wave"] = Field(description="a barrel, or cosine waves")

@@ -10,7 +10,7 @@ from tol3d.files import Files
 from tol3d.gearing.draws.flank_record import FlankRecord
 from tol3d.gearing.effects import Effect
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
-from tol3d.gearing.grammar.parts import InternalGearSpec, SpurGearSpec
+from tol3d.gearing.grammar.parts import HelicalGearSpec, InternalGearSpec, SpurGearSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.gears import SpurGear
 from tol3d.gears.flank import LEFT, RIGHT, Flank
@@ -74,11 +74,11 @@ IsoClass = Annotated[int, Field(ge=CLASSES[0], le=CLASSES[1])]
 
 
 class FlankToleranceSpec(AboutOne, ToleranceEntry):
-    """A tolerance of single flanks of a spur gear, each tooth with deviations of its own."""
+    """A tolerance of single flanks of a spur or helical gear, each tooth with deviations of its own."""
 
-    applies_to: ClassVar[tuple[type[Entry], ...]] = (SpurGearSpec,)
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (SpurGearSpec, HelicalGearSpec)
 
-    of: Name = Field(description="the gear, a spur gear")
+    of: Name = Field(description="the gear, a spur or helical gear")
     flanks: Flanks = Field(
         description="right or left: that side of the teeth; each: both, drawn each for itself; together: whole teeth"
     )
@@ -132,7 +132,7 @@ def limits_of_class(iso_class: int, gear: SpurGear) -> FlankTolerances:
     Raises:
         GeometryError: it states none.
     """
-    return flank_tolerances(iso_class, gear.teeth, gear.module, gear.face_width)
+    return flank_tolerances(iso_class, gear.teeth, gear.module, gear.face_width, gear.helix_angle)
 
 
 def no_word(example: str) -> BeforeValidator:

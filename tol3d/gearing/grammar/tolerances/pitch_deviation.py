@@ -1,4 +1,4 @@
-"""Pitch deviations of a spur gear's teeth."""
+"""Pitch deviations of a spur or helical gear's teeth."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -241,11 +241,11 @@ class PitchDeviationSpec(FlankToleranceSpec):
         return GivenDraw(tooth_names(gear.teeth, self.sides), tuple(found))
 
     def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
-        """A flank that lies F ahead lies F cos(alpha) out of its tooth on the left side, so much inside on the right.
+        """A flank that lies F ahead lies F cos(alpha_n) cos(beta) out of its tooth on the left, inside on the right.
 
-        Exact: involutes that are turned by F/r lie r_b F/r apart along their normals.
+        Exact: involutes that are turned by F/r lie r_b cos(beta_b) F/r apart along their normals.
         """
-        cosine = math.cos(gear.pressure_angle)
+        cosine = math.cos(gear.pressure_angle) * math.cos(gear.helix_angle)
         places = [
             tuple(Place(tooth, flank, -flank * cosine) for flank in self.flanks_of(side))
             for side in self.sides
