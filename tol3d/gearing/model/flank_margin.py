@@ -28,12 +28,11 @@ def standing_out(pair: GearPair, margin: float) -> float:
     in the transverse section.
     """
     tangent = sum(pair.working_radii) * math.sin(pair.working_pressure_angle)
-    turned = margin * pair.pinion.transverse_base_pitch
     found = math.inf
     for gear in (pair.pinion, pair.wheel):
         if not isinstance(gear, SpurGear):
             raise TypeError("single flanks deviate of external cylindrical gears only")
-        tip = gear.base_radius * gear.tip_roll
+        tip, turned = gear.base_radius * gear.tip_roll, margin * gear.transverse_base_pitch
         found = min(found, turned**2 * tip * tangent / (2 * gear.base_radius**2 * (tangent - tip)))
     return found * pair.base_helix_cosine
 
