@@ -17,6 +17,7 @@ FURTHEST_ADDENDUM = 0.6  # modules; by which an addendum is changed at most
 FURTHEST_SHIFT = 1.0  # modules; the same of a profile shift
 FREE = 1e-3  # mm; a nominal backlash so far below 0 is one of rounded sizes
 DIGITS = 4  # of a module, and of a centre distance [mm], as they are said
+GRAIN = 1e4  # to one; the same
 
 
 def remedy(pair: SpurPair) -> str:
@@ -66,7 +67,7 @@ def changes(pair: SpurPair) -> Iterator[tuple[str, SpurPair | None]]:
             yield from addenda(shifted, f"{words} with ")
     apart = pair.zero_backlash_centre_distance
     if math.isfinite(apart):
-        apart = math.ceil(10**DIGITS * apart) / 10**DIGITS
+        apart = math.ceil(GRAIN * apart) / GRAIN
         words = f"a centre distance of {apart:g} mm"
         moved = made(pair, apart=apart)
         yield words, moved
@@ -126,4 +127,4 @@ def missing_shift(pair: SpurPair) -> float:
     pinion = pair.pinion
     open_by = involute(pair.working_pressure_angle) - pair.zero_backlash_involute
     missing = open_by * (pinion.teeth + pair.wheel.teeth) / (2 * math.tan(pinion.pressure_angle))
-    return math.floor(10**DIGITS * missing) / 10**DIGITS
+    return math.floor(GRAIN * missing) / GRAIN

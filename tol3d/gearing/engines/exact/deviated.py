@@ -102,7 +102,7 @@ def of_plain(tooth: DeviatedTooth, spur_tooth: SpurTooth, scale: float) -> Devia
 
 
 @part
-def is_level(tooth: DeviatedTooth) -> bool:
+def is_level(tooth: Any) -> bool:
     """True if a flank is a parallel involute."""
     return tooth.slope == 0.0 and tooth.form == 0.0 and tooth.helix == 0.0
 
@@ -139,7 +139,7 @@ def offset_of(tooth: DeviatedTooth, roll: float, z: float, cos: float, sin: floa
 
 
 @part
-def offset_at(tooth: DeviatedTooth, roll: float, z: float) -> Offset:
+def offset_at(tooth: Any, roll: float, z: float) -> Offset:
     """Offset of a flank at a roll [rad] and a height [mm]."""
     cos, sin = wave_at(tooth, roll)
     return offset_of(tooth, roll, z, cos, sin)
