@@ -373,7 +373,7 @@ def test_profile_shifts_that_the_file_does_not_say_are_those_without_backlash() 
     assert stage.normal_backlash == pytest.approx(0.0, abs=2e-6)
 
 
-def with_shift(rexs: Rexs, shift: object) -> Rexs:
+def with_shift(rexs: Rexs, shift: float | str) -> Rexs:
     """A pair without limits of its teeth and its distance, whose pinion has another profile shift."""
     series = "tooth_thickness_deviation_tolerance_series_din_3967_1978"
     for side in (6, 7):
@@ -423,7 +423,7 @@ def test_teeth_that_rounding_does_not_explain_are_not_changed(shift: float) -> N
         (2.0, "2e-1", 0.0),
     ],
 )
-def test_rounding_takes_what_the_last_digits_can(module: float, shift: object, by: float) -> None:
+def test_rounding_takes_what_the_last_digits_can(module: float, shift: float | str, by: float) -> None:
     (stage,) = gearbox(with_shift(pair(module=module), shift).having(11, center_distance=(300, "mm"))).stages
     assert stage.by_rounding == pytest.approx(by, abs=2e-7)
 
