@@ -176,13 +176,16 @@ def test_builds_at_their_tolerances_differ_by_tenths_of_a_micrometre(kind: str, 
     assert np.abs(off).max() < 0.6e-3
 
 
-def test_transmission_error_follows_contact_lines_of_tilted_axes(tmp_path: Any) -> None:
+@pytest.mark.parametrize("kind", ["external", "ring", "driving ring"])
+def test_transmission_error_follows_contact_lines_of_tilted_axes(kind: str, tmp_path: Any) -> None:
     """A constant tilt of 0.3 mrad alone: up to p_bn sin(beta_b) cos(beta_b) f within every pitch, by both methods."""
     constant = "distribution: {kind: constant, value: "
     tilt = f"tolerances:\n  out: {{kind: axis_out_of_plane, of: gear pair, {constant}0.3 mrad}}}}\n"
-    thin = "  thin: {kind: tooth_thickness, of: wheel, distribution: {kind: constant, value: -100 um}}\n"
-    (path := tmp_path / "tilted.yaml").write_text(text(tilt + thin))
-    model = model_of_scene(path)
+    driven = "pinion" if kind == "driving ring" else "wheel"  # a thinner driver's lines would lie elsewhere
+    thin = f"  thin: {{kind: tooth_thickness, of: {driven}, {constant}-100 um}}}}\n"
+    (path := tmp_path / "tilted.yaml").write_text(text(tilt + thin, **({} if kind == "external" else RING)))
+    swapped = {"moves.gear pair.driver": "wheel", "moves.gear pair.driven": "pinion"}
+    model = model_of_scene(load(path).with_(swapped if kind == "driving ring" else {}))
     measure = measure_of(model, "drive TE")
     deviations = np.array([[own.distribution.mean for own in model.contributors]])
     trials = Trials(deviations, {mesh.name: np.zeros(1) for mesh in model.meshes})
@@ -190,10 +193,11 @@ def test_transmission_error_follows_contact_lines_of_tilted_axes(tmp_path: Any) 
     engine, mesh = ExactEngine(model), model.meshes[0]
     angles = np.array(model.driver_angles(measure, mesh.name))
     rests, _ = engine.rests(engine.build(deviations), mesh, Reading(), angles)
-    turned = rests.driven_angle[0] - mesh.pair.driven_angle(angles)
+    ((sense, _),) = measure.kind.backlashes  # inside a ring gears turn alike
+    turned = sense * (rests.driven_angle[0] - mesh.pair.driven_angle(angles))
     exact = turned - turned[0]
     pair = mesh.pair
-    assert isinstance(pair, SpurPair)
+    assert isinstance(pair, SpurPair | InternalPair)
     beta_b, f = pair.pinion.base_helix_angle, 0.3e-3 * math.cos(pair.working_pressure_angle)
     largest = pair.pinion.base_pitch * math.sin(beta_b) * math.cos(beta_b) * f / pair.wheel.section_arm
     assert 0.4 * largest < np.ptp(exact) < 1.05 * largest
