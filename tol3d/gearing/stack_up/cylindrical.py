@@ -88,7 +88,7 @@ class HelicalStack(SpurStack):
 
     @property
     def neglects(self) -> tuple[Neglect, ...]:
-        """None of external gears: base pitches that grow apart and the growth of the nominal backlash are in the sum."""
+        """None of external gears: base pitches that grow apart, and the growth of the nominal backlash, are summed."""
         return () if isinstance(self.pair, SpurPair) else super().neglects
 
     @property
