@@ -104,7 +104,8 @@ def of_plain(tooth: DeviatedTooth, spur_tooth: SpurTooth, scale: float) -> Devia
 @part
 def is_level(tooth: Any) -> bool:
     """True if a flank is a parallel involute."""
-    return tooth.slope == 0.0 and tooth.form == 0.0 and tooth.helix == 0.0
+    level: bool = tooth.slope == 0.0 and tooth.form == 0.0 and tooth.helix == 0.0
+    return level
 
 
 @part
