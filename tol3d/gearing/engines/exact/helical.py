@@ -346,6 +346,7 @@ class InternalHelicalTooth(NamedTuple):
 
 
 internal(InternalHelicalTooth)
+variant(begun, InternalHelicalTooth)(as_given)
 
 
 @part
