@@ -180,6 +180,11 @@ class StatedLink(ABC):
         pose = self.driver_from_driven
         return bool(np.abs(pose[:2, 3]).max() < SAME_AXIS and np.abs(pose[:2, 2]).max() < SAME_AXIS)
 
+    @property
+    def twists(self) -> Mapping[str, float]:
+        """By shaft, its turn as it slides in the teeth of what rests [rad/mm]; none of straight teeth."""
+        return {}
+
     @abstractmethod
     def exact(self, seen: LinkTrials) -> FreeTurn:
         """The free turn of the 3D simulation, trial by trial."""

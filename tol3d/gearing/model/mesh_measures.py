@@ -215,7 +215,7 @@ def _mesh_of(element: Link | Parallel, scene: Scene, name: str, model: Model, tr
     Raises:
         SceneError: it is a link of another kind, or load paths in parallel.
     """
-    mesh = next((mesh for mesh in model.meshes if mesh.name == element.name), None)
+    mesh = model.mesh_of(element.name)
     if mesh is not None:
         return mesh
     if isinstance(element, Parallel):

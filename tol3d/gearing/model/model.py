@@ -168,6 +168,10 @@ class Model:
         """The mesh of that name."""
         return next(mesh for mesh in self.meshes if mesh.name == name)
 
+    def mesh_of(self, link: str) -> Mesh | None:
+        """The mesh that a link is; None of another one."""
+        return next((mesh for mesh in self.meshes if mesh.name == link), None)
+
     def link(self, name: str) -> StatedLink:
         """The link of that name, which is no mesh."""
         return next(link for link in self.links if link.name == name)

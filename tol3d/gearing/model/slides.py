@@ -31,7 +31,8 @@ SAME_LEAD: Final = 1e-9  # of a twist; gears drawn for one lead differ by the di
 
 def sliding_shafts(model: Model) -> tuple[str, ...]:
     """Shafts with axial play, in the order of the contributors."""
-    shafts = dict.fromkeys(shaft for shaft, _ in model.layout.carrying.values())
+    driving = (shaft for link in model.links for shaft in (link.driver, link.driven) if link.twists)
+    shafts = dict.fromkeys((*(shaft for shaft, _ in model.layout.carrying.values()), *driving))
     acting = [contributor.effect for contributor in model.contributors]
     return tuple(shaft for shaft in shafts if any(effect.slides(shaft) for effect in acting))
 
@@ -45,31 +46,32 @@ def slides_of_mesh(model: Model, mesh: Mesh, gear: str) -> tuple[Slide, ...]:
 
 
 def slides_along(model: Model, path: LoadPath) -> Mapping[str, tuple[Slide, ...]]:
-    """Turns by the shafts of a load path, by the mesh at which each counts: at the shaft which that drives."""
+    """Turns by the shafts of a load path, by the link at which each counts: at the shaft which that drives."""
     found: dict[str, tuple[Slide, ...]] = {}
     for shaft in sliding_shafts(model):
         if any(isinstance(element, Parallel) for element in _at(path, shaft)):
             continue  # see with_shared_slides
-        meshes = [mesh for element in _at(path, shaft) for mesh in model.meshes if mesh.name == element.name]
-        if not (twist := _unbalanced([_twist(model, mesh, shaft) for mesh in meshes])):
+        met = {link: twist for link in links_of(tuple(_at(path, shaft))) if (twist := _twist(model, link, shaft))}
+        if not (twist := _unbalanced([*met.values()])):
             continue
-        driving = (mesh for mesh in meshes if model.layout.carrying[mesh.driven][0] == shaft)
-        mesh = next(driving, meshes[0])
-        rate = 1.0 if model.layout.carrying[mesh.driven][0] == shaft else abs(float(mesh.rate))
-        found[mesh.name] = (*found.get(mesh.name, ()), Slide(shaft, rate * twist))
+        link = next((own for own in met if own.driven == shaft), next(iter(met)))
+        rate = 1.0 if link.driven == shaft else abs(float(link.rate))
+        found[link.name] = (*found.get(link.name, ()), Slide(shaft, rate * twist))
     return found
 
 
 def _unbalanced(twists: Sequence[float]) -> float:
-    """Size of the twist by which a shaft of one or two meshes slides; 0 of one whose thrusts cancel."""
+    """Size of the twist by which a shaft of one or two links slides; 0 of one whose thrusts cancel."""
     left = abs(twists[0] - twists[1]) if len(twists) == 2 else abs(sum(twists))
     return left if left > SAME_LEAD * max(map(abs, twists), default=0.0) else 0.0
 
 
-def _twist(model: Model, mesh: Mesh, shaft: str) -> float:
-    """Twist of the gear of a mesh that sits on a shaft [rad/mm]."""
-    on_it = mesh.driver if model.layout.carrying[mesh.driver][0] == shaft else mesh.driven
-    return mesh.gear(on_it).twist
+def _twist(model: Model, link: Link, shaft: str) -> float:
+    """Twist of a shaft in the teeth of a link [rad/mm]."""
+    mesh = model.mesh_of(link.name)
+    if mesh is None:
+        return model.link(link.name).twists.get(shaft, 0.0)
+    return mesh.gear(mesh.driver if link.driver == shaft else mesh.driven).twist
 
 
 def _at(path: LoadPath, shaft: str) -> list[Link | Parallel]:
@@ -169,15 +171,20 @@ def refuse_shared_thrust(scene: Scene, model: Model) -> None:
         for shaft in filter(contributor.effect.slides, sliding_shafts(model)):
             for path in _paths(model):
                 met = _at(path, shaft)
-                names = {link.name for link in links_of(tuple(met))}
-                helical = any(mesh.pair.pinion.twist for mesh in model.meshes if mesh.name in names)
+                helical = [link for link in links_of(tuple(met)) if _is_helical(model, link)]
                 parallel = [element for element in met if isinstance(element, Parallel)]
                 mixed = any(isinstance(own, Network) or _is_nested(own) or _is_large(model, own) for own in parallel)
-                carried = bool(parallel) and any(link.carrier for link in links_of(path))
-                if helical and (mixed or carried or len(parallel) > 1 or (not parallel and len(met) > 2)):
+                turned = any(link.carrier for link in (links_of(path) if parallel else helical))
+                sets = bool(parallel) and any(model.mesh_of(link.name) is None for link in helical)
+                many = len(parallel) > 1 or (not parallel and len(met) > 2)
+                if helical and (mixed or turned or sets or many):
                     words = f"expected a shaft in one load path, or in simple parallel ones, got {shaft!r}: how the "
                     advice = "load paths that meet at it share its thrust is not simulated; hold it along its axis"
                     raise scene.refuse(("tolerances", contributor.name, "of"), f"{words}{advice}")
+
+
+def _is_helical(model: Model, link: Link) -> bool:
+    return any(_twist(model, link, shaft) for shaft in _shafts(link))
 
 
 def _is_large(model: Model, group: Parallel) -> bool:
@@ -207,9 +214,7 @@ def idle_slides(model: Model) -> Iterator[tuple[str, str]]:
         for shaft in filter(contributor.effect.slides, sliding_shafts(model)):
             if shaft in read:
                 continue
-            gears = {gear for gear, (carrier, _) in model.layout.carrying.items() if carrier == shaft}
-            twists = [mesh.gear(gear).twist for mesh in model.meshes for gear in gears & {mesh.driver, mesh.driven}]
-            if not any(twists):
+            if not any(_twist(model, link, shaft) for link in model.layout.links if shaft in link.shafts):
                 yield contributor.name, f"acts on nothing: no gear on {shaft!r} is helical, and spur gears do not screw"
             else:
                 words = "no angular backlash, lost motion or swing is measured that depends on it, or thrusts of equal "

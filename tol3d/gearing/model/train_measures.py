@@ -71,7 +71,7 @@ def _stage(model: Model, element: Link | Parallel, ends: tuple[str, str], read: 
 
 def _single(model: Model, link: Link, ratio: float, read: Reader) -> Stage:
     """A link that turns the shaft that is read by a ratio, signed, for a turn of its driven shaft."""
-    mesh = next((mesh for mesh in model.meshes if mesh.name == link.name), None)
+    mesh = model.mesh_of(link.name)
     if mesh is None:
         own = model.link(link.name)
         return Stage(link.name, abs(ratio), None, 1 if ratio > 0.0 else -1, own.has_middle, own.compares)

@@ -1,8 +1,9 @@
 """Planetary sets between two shafts of a train, whose play is the set's lost motion at its output."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from typing_extensions import override
@@ -31,6 +32,8 @@ from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.copula import Copula
 from tol3d.study.system.system import KeyPath
 
+SAME_LEAD: Final = 1e-9  # of a twist; gears drawn for one lead differ by the digits of their helix angles
+
 
 @dataclass(frozen=True, kw_only=True)
 class SetLink(ReducerLink):
@@ -55,6 +58,22 @@ class SetLink(ReducerLink):
     def contacts(self) -> int:
         """One for each mesh of each planet."""
         return self.own.planets * len(self.own.meshes)
+
+    @property
+    @override
+    def twists(self) -> Mapping[str, float]:
+        """Of central gears kappa; of the carrier by its planets, which screw in sun and ring against each other.
+
+        Planets whose gears have one lead leave the carrier where it is: their thrusts cancel.
+        """
+        own, turned = self.own, float(self.rate)
+        kappa = {part: self.made[part].twist for part in (own.input, own.output, own.held) if part != own.carrier}
+        if own.carrier not in kappa and own.carrier in (own.input, own.output):
+            by = turned if own.carrier == own.output else 1 / turned
+            first = kappa[own.input if own.carrier == own.output else own.output] * by
+            rest = kappa[own.held] * (1 - by)
+            kappa[own.carrier] = first + rest if not math.isclose(first, -rest, rel_tol=SAME_LEAD) else 0.0
+        return {self.driver: kappa[own.input], self.driven: kappa[own.output]}
 
     def lost(self, turning: StackUp | Contact, deviated: Deviated, turns: Array) -> Lost:
         """See ReducerLink; a set that jams lacks room at both ends."""
