@@ -13,11 +13,10 @@ from tol3d import check_scene
 from tol3d.analyses.kept_changes import scene_with
 from tol3d.analyses.response import response_of
 from tol3d.analyses.stated_changes import Change
-from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.summary.backlash_stages import backlash_stages
 from tol3d.gearing.system import GearSystem
 from tol3d.gears import SpurGear, SpurPair
-from tol3d.simulate import load, simulation_of
+from tol3d.simulate import simulation_of
 
 PAIR = """
 scene: spur stage of cd25
@@ -97,13 +96,6 @@ def test_the_table_of_a_helical_pair(tmp_path: Path) -> None:
     rows = {own.symbol: own for own in backlash_stages(check_scene(written(text, tmp_path)).model, GearSystem, "exact")}
     assert (rows["j_bn"].least_um, rows["j_bn"].largest_um) == pytest.approx((129.629, 218.071), abs=PRINTED * 2)
     assert (rows["j_wt"].least_um, rows["j_wt"].largest_um) == pytest.approx((162.427, 273.400), abs=PRINTED * 2)
-
-
-def test_gears_in_bores_have_no_table() -> None:
-    """Their centre distances, and what warmth does of these, are of the housing."""
-    system = simulation_of(load("housed_gears")).system
-    assert isinstance(system, MachineSystem)
-    assert backlash_stages(system.gears.model, GearSystem, "analytic") == []
 
 
 def test_stages_add_what_is_stated_of_the_pair() -> None:
