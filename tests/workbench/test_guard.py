@@ -378,6 +378,7 @@ def test_a_server_that_is_killed_loses_no_what_if_and_ends_in_order_when_it_is_a
         assert posted(origin, token, "folder", words)["read_only"] == "", "the lock of a killed one is free"
         assert posted(origin, token, "scene", words)["notes"] == {
             "now": words["now"],
+            "past": [],
             "beside": [],
             "measure": "lost motion",
         }
