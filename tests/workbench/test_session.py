@@ -17,6 +17,7 @@ from tol3d.analyses.before_after import what_if
 from tol3d.analyses.stated_changes import factor_of
 from tol3d.analyses.stated_limits import limits_of_text
 from tol3d.apps.workbench import session
+from tol3d.apps.workbench.card import NO_SHARES, sliders
 from tol3d.apps.workbench.folder_questions import FolderQuestions
 from tol3d.apps.workbench.place import APP, FolderLock
 from tol3d.apps.workbench.questions import Questions, StaleError
@@ -502,6 +503,18 @@ def test_sliders_are_sorted_by_the_shares_of_a_run_and_end_where_a_tolerance_can
     moved = [part.partition('"')[0] for part in told["sliders"].split('<li class="moved" data-line="')[1:]]
     assert moved == [CENTRE]
     assert lines == sorted([*{*shares} - {CENTRE}], key=lambda name: -shares[name])
+    summary = run.found.measures[BACKLASH]
+    unknown = [
+        own.model_copy(update={"analytic_percent": None, "geometric_percent": None}) for own in summary.contributors
+    ]
+    words = sliders(
+        pair.session("pair.yaml"),
+        BACKLASH,
+        {},
+        summary.model_copy(update={"contributors": unknown, "analytic_closed_form": None}),
+    )
+    assert NO_SHARES in words
+    assert "%</span>" not in words
 
 
 def _picture(questions: Questions, **words: Any) -> dict[str, Any]:

@@ -52,6 +52,7 @@ STEP: Final = 1.01
 """Factor on the width by a step of a slider, as in `page/sliders.js`, about: it lands on round numbers."""
 WIDEST: Final = 4.0
 """Factor at the ends of a slider, where nothing ends it before."""
+NO_SHARES: Final = "shares are not known here: a regression explains too little; a run tells them by high–low–mean"
 KINDS: Final = {"OK": "ok", "NOT OK": "not-ok", "too few trials": "open", "no limits": "none"}
 
 
@@ -234,15 +235,15 @@ def sliders(session: Session, measure: str, now: WhatIf, summary: MeasureSummary
         summary: of a run of the scene, which knows shares; None until there is one.
     """
     lines, shares = session.acting(measure), dict[str, Share]()
-    if summary is not None:
-        known, none = shares_by_contributor(summary), Share(0.0, 0.0, 0.0)
+    known, none = shares_by_contributor(summary) if summary is not None else {}, Share(0.0, 0.0, 0.0)
+    if known:
         shares = {line: Share.together(known.get(own, none) for own in session.response.lines[line]) for line in lines}
         lines = tuple(sorted(lines, key=lambda line: shares[line].order))
     if not lines:
         return tag(
             "p", session.response.nothing_acts(session.measure(measure)) or "no tolerance acts on it", class_="note"
         )
-    words = [unexplained_words(summary), within_error_words(summary)] if summary is not None else []
+    words = [unexplained_words(summary) if known else NO_SHARES, within_error_words(summary)] if summary else []
     first = [tag("p", own, class_="warning") for own in words if own]
     return together(
         *first, tag("ul", *(_slider(session, line, now, shares.get(line)) for line in lines), class_="sliders")
