@@ -95,7 +95,7 @@ def shares_of(measure: MeasureSummary) -> list[Column]:
 
 def leading_shares(measure: MeasureSummary) -> Column | None:
     """The column whose shares are named first: the 3D simulation's, or the analytic one's."""
-    columns = shares_of(measure)
+    columns = [column for column in shares_of(measure) if column.method != "published"]
     return next((column for column in columns if column.method == "geometric"), columns[0] if columns else None)
 
 

@@ -243,7 +243,9 @@ def sliders(session: Session, measure: str, now: WhatIf, summary: MeasureSummary
         return tag(
             "p", session.response.nothing_acts(session.measure(measure)) or "no tolerance acts on it", class_="note"
         )
-    words = [unexplained_words(summary) if known else NO_SHARES, within_error_words(summary)] if summary else []
+    words = (
+        [unexplained_words(summary) if known else NO_SHARES, within_error_words(summary)] if summary is not None else []
+    )
     first = [tag("p", own, class_="warning") for own in words if own]
     return together(
         *first, tag("ul", *(_slider(session, line, now, shares.get(line)) for line in lines), class_="sliders")
