@@ -316,18 +316,24 @@ def test_a_scene_that_interferes_without_a_series_names_it() -> None:
     assert "'zz25'" in told
 
 
-def test_a_planetary_stage_is_one_set_with_one_contributor_a_pin() -> None:
-    """Lost motion at the carrier: (j_sp + j_rp)/(2 a), 370/156 000 and 540/156 000 rad, whatever the pins do."""
-    text, read = scene_of(planetary())
+@pytest.mark.parametrize(("helix", "distance"), [(0.0, "78 mm"), (15.0, "80.7515421 mm")])
+def test_a_planetary_stage_is_one_set_with_one_contributor_a_pin(helix: float, distance: str) -> None:
+    """Lost motion at the carrier: (j_sp + j_rp)/(2 a), 370/156 000 and 540/156 000 rad, whatever the pins do.
+
+    Of helical teeth arcs of the transverse section and the distance are both 1/cos β as large, in the same ranges.
+    """
+    text, read = scene_of(planetary(helix=helix))
     (move,) = read["moves"].values()
     assert move == {
         "kind": "planetary", "planet": "planet", "planets": 3, "carrier": "carrier",
-        "meshes": {"sun": "planet wheel", "ring": "planet wheel"}, "centre_distance": "78 mm",
+        "meshes": {"sun": "planet wheel", "ring": "planet wheel"}, "centre_distance": distance,
         "held": "ring", "input": "sun", "output": "carrier",
     }  # fmt: skip
     assert read["tolerances"]["set planet pins"] == {
-        "kind": "planet_pin", "of": "carrier", "direction": "radial", "distribution": {"fit": "js7", "of": "78 mm"},
+        "kind": "planet_pin", "of": "carrier", "direction": "radial", "distribution": {"fit": "js7", "of": distance},
     }  # fmt: skip
+    hands = [read["parts"][own].get("hand") for own in ("sun", "planet wheel", "ring")]
+    assert hands == (["left", "right", "right"] if helix else [None, None, None])
     simulation = simulated(text)
     pins = next(own for own in simulation.system.contributors if own.name == "set planet pins")
     assert len(pins.columns) == 3
@@ -867,6 +873,12 @@ NAMED = {
     "classes of a set": (
         planetary().having(9, tolerance_class_according_to_iso_1328_2013=("6", "none")),
         "sun: class 6 of ISO 1328-1: single teeth of planetary sets do not deviate",
+    ),
+    "class of a gear in a ring": (
+        pair(helix=12.0).typed(8, "ring_gear").having(
+            8, helix_angle_reference_diameter=(12.0, "deg"), tolerance_class_according_to_iso_1328_2013=("6", "none"),
+        ),
+        "wheel: class 6 of ISO 1328-1: single teeth of meshes with rings do not deviate",
     ),
     "shafts apart": (
         pair().having(4, support_vector=((5.0, 0.0, 60.5), "mm")),
