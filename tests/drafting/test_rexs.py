@@ -577,9 +577,10 @@ def test_two_load_paths_that_meet_again_have_one_output() -> None:
     assert [own.name for own in simulated(text).system.measures][-1] == "lost motion of out"
 
 
-def test_a_set_behind_a_stage_is_one_train() -> None:
+@pytest.mark.parametrize("helix", [0.0, 15.0])
+def test_a_set_behind_a_stage_is_one_train(helix: float) -> None:
     """A stage drives the sun's shaft: 2 · (1 + 61/17) turns of the motor a turn of the carrier, backwards."""
-    rexs = planetary()
+    rexs = planetary(helix=helix)
     number = len(rexs.components) + 1
     shaft = next(k for k, own in rexs.components.items() if own[1] == "sun shaft")
     writer = Writer("1.1", dict(rexs.components), list(rexs.relations))
@@ -593,6 +594,8 @@ def test_a_set_behind_a_stage_is_one_train() -> None:
     assert read["moves"]["train to carrier"] == {"kind": "train", "driven": "motor", "output": "carrier"}
     simulation = simulated(text.replace("output: carrier}", f"output: carrier, ratio: {-2 * (1 + 61 / 17):.6f}}}"))
     assert [own.name for own in simulation.system.measures] == ["before normal backlash", "lost motion of carrier"]
+    names = {own.name for own in simulated(filled_in(text)).system.contributors}
+    assert {own for own in names if own.endswith("play")} == ({"sun shaft axial play"} if helix else set())
 
 
 DOCTYPE = b'<!DOCTYPE model [<!ENTITY a "b">]>'
