@@ -5,6 +5,7 @@ import json
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import cos, radians
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
@@ -208,8 +209,11 @@ def pair(version: str = "1.7", *, module: float = 2.0, helix: float = 0.0) -> Re
     return writer.rexs()
 
 
-def planetary(planets: int = 3, *, series: tuple[str, str, str] = ("c25", "c25", "c25"), field: int = 7) -> Rexs:
-    """A sun of 17 teeth, planets of 22, a ring of 61 that is coupled to the casing; module 4 mm, 78 mm apart."""
+def planetary(
+    planets: int = 3, *, series: tuple[str, str, str] = ("c25", "c25", "c25"), field: int = 7, helix: float = 0.0
+) -> Rexs:
+    """A sun of 17 teeth, planets of 22, a ring of 61 that is coupled to the casing; m_n 4 mm, 78 mm/cos β apart."""
+    distance = 78.0 / cos(radians(helix)) if helix else 78.0
     writer = Writer("1.1")
     sun_shaft, ring_shaft, carrier_shaft = (writer.shaft(own, (0.0, 0.0, 0.0)) for own in ("sun shaft", "rim", "web"))
     stage, carrier = writer.add("planetary_stage", "set"), writer.add("planet_carrier", "carrier")
@@ -220,16 +224,16 @@ def planetary(planets: int = 3, *, series: tuple[str, str, str] = ("c25", "c25",
     writer.relate("planet_carrier_shaft", planetary_stage=stage, shaft=carrier_shaft)
     for own in (sun_shaft, ring_shaft):
         writer.relate("central_shaft", planetary_stage=stage, shaft=own)
-    sun = writer.gear("sun", sun_shaft, 17, 4.0, None, series=series[0])
-    ring = writer.gear("ring", ring_shaft, 61, 4.0, None, ring=True, series=series[2])
+    sun = writer.gear("sun", sun_shaft, 17, 4.0, None, helix=-helix, series=series[0])
+    ring = writer.gear("ring", ring_shaft, 61, 4.0, None, helix=helix, ring=True, series=series[2])
     writer.add("external_load", "load")
     for k in range(planets):
-        shaft = writer.shaft(f"pin @ {k}", (0.0, 0.0, 78.0))
+        shaft = writer.shaft(f"pin @ {k}", (0.0, 0.0, distance))
         writer.relate("planet_shaft", planetary_stage=stage, shaft=shaft)
-        planet = writer.gear(f"planet wheel @ {k}", shaft, 22, 4.0, 0.0, series=series[1])
+        planet = writer.gear(f"planet wheel @ {k}", shaft, 22, 4.0, 0.0, helix=helix, series=series[1])
         for first, second in ((sun, planet), (planet, ring)):
             mesh = writer.stage(
-                f"mesh @ {k}", first, second, 78.0, center_distance_tolerance_field_din_3964_1980=(field, "none")
+                f"mesh @ {k}", first, second, distance, center_distance_tolerance_field_din_3964_1980=(field, "none")
             )
             writer.relate("assembly", assembly=stage, part=mesh)
     return writer.rexs()

@@ -379,6 +379,10 @@ def test_the_command_writes_the_scene(tol3d: Command, tmp_path: Path) -> None:
         ("{fit: k6, of: 1.26 in, law: {kind: triangular}}", "h7", "{fit: h7, of: 1.26 in, law: {kind: triangular}}"),
         ("40.1 mm +0.12/0", "H9", "{fit: H9, of: 40.1 mm}"),
         ("{general: m, of: 60 mm}", "m6", "{fit: m6, of: 60 mm}"),
+        ("{din_3967: cd25}", "d24", "{din_3967: d24}"),
+        ("{din_3967: c25, law: {kind: triangular}}", "{din_3967: 24 d}", "{din_3967: 24 d, law: {kind: triangular}}"),
+        ("-40/-90 um", "{din_3967: cd25}", "{din_3967: cd25}"),
+        ("{fit: js7, of: 60 mm}", "cd25", "{din_3967: cd25}"),
     ],
 )
 def test_a_class_is_kept_as_a_class_where_the_line_has_limits_of_a_drawing(
@@ -392,6 +396,27 @@ def test_a_class_is_kept_as_a_class_where_the_line_has_limits_of_a_drawing(
     assert in_numbers(scene, kept) == {}
 
 
+def test_a_series_of_din_3967_is_read_at_the_reference_diameter() -> None:
+    """At 48 mm cd is -54 um and 25 a tolerance of 30 um; a law with limits of its own is kept in numbers."""
+    scene = pair("{kind: uniform, lower: -90 um, upper: -40 um}")
+    simulation = simulation_of(scene)
+    own, sizes = response_of(simulation, analytic=True), sizes_of(scene, simulation.lines)
+    change = change_of(own, "t={ din_3967: cd25 }", sizes)
+    assert change.limits == pytest.approx((-0.084, -0.054), rel=1e-12)
+    assert change == change_of(own, "t=cd25", sizes)
+    kept = assert_kept("", change, scene, own)
+    assert kept.text == scene.text.replace("lower: -90 um, upper: -40 um", "lower: -84 um, upper: -54 um")
+    for value in ("cd40", "H7", "{din_3967: H7}"):
+        with pytest.raises(InputError, match="and 21 to 30, as in cd25, got"):
+            change_of(own, f"t={value}", sizes)
+    scene = read(CENTRE)
+    simulation = simulation_of(scene)
+    own, sizes = response_of(simulation, analytic=True), sizes_of(scene, simulation.lines)
+    with pytest.raises(InputError, match="measured: arc, got 'cd25' of another tolerance"):
+        change_of(own, "t={din_3967: cd25}", sizes)
+    assert change_of(own, "t={din_3964: js7}", sizes).limits == pytest.approx((-0.015, 0.015), rel=1e-12)
+
+
 CENTRE = PAIR.replace(
     "t: {kind: tooth_thickness, of: a, distribution: WRITTEN}",
     "t: {kind: centre_distance, of: mesh, distribution: {kind: normal, lower: -5 um, upper: 9 um}}",
@@ -403,7 +428,7 @@ def test_a_class_of_a_size_that_a_part_or_move_states_is_kept_in_numbers_where_a
     scene = read(CENTRE)
     simulation = simulation_of(scene)
     own, sizes = response_of(simulation, analytic=True), sizes_of(scene, simulation.lines)
-    assert {name: str(size) for name, size in sizes.items()} == {"t": "60.2 mm"}
+    assert {name: str(own["fit"]) for name, own in sizes.items()} == {"t": "60.2 mm"}
     for value, lower, upper in (("H7", 0, 30), ("j6", -7, 12)):
         kept = assert_kept("", change_of(own, f"t={value}", sizes), scene, own)
         assert kept.text == scene.text.replace("lower: -5 um, upper: 9 um", f"lower: {lower} um, upper: {upper} um")

@@ -5,7 +5,7 @@ import re
 import socket
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from math import acos, cos, pi, radians, sin, tan
+from math import acos, atan, cos, pi, radians, sin, tan
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +70,10 @@ def extremes(simulation: Simulation, measure: str, varied: Mapping[str, int]) ->
     method = system.method("exact", system.materials("exact"))
     answers = method.answers(stated(system, ends), system.measures)
     return [float(own) for own in np.ravel(answers.values[measure])]
+
+
+def involute(angle: float) -> float:
+    return tan(angle) - angle
 
 
 def test_a_spur_stage_is_drafted_with_its_numbers() -> None:
@@ -248,6 +252,44 @@ def test_allowances_are_read_in_the_words_of_the_file() -> None:
     assert tolerances["front clearance"]["distribution"] == {"kind": "constant", "value": "12 um"}
 
 
+@pytest.mark.parametrize(("teeth", "helix"), [(8, 0.0), (None, 0.0), (None, 15.0)])
+def test_a_span_of_a_ring_above_its_nominal_makes_teeth_thinner(teeth: int | None, helix: float) -> None:
+    """50 and 90 um along the normals are 1/(cos α_n cos β) as much on arcs; over 2 a they turn the carrier.
+
+    Helical rings have no span, but a file may have its allowances.
+    """
+    spans: dict[str, tuple[float, str]] = {
+        "lower_backlash_allowance_referenced_to_span": (50.0, "mum"),
+        "upper_backlash_allowance_referenced_to_span": (90.0, "mum"),
+    }
+    rexs = planetary(series=("", "", ""), helix=helix).having(12, **spans)
+    text, read = scene_of(rexs.having(12, number_of_teeth_for_span_measurement=(teeth, "none")) if teeth else rexs)
+    assert read["tolerances"]["ring tooth thickness"]["measured"] == ({"span": 8} if teeth else "normal")
+    values = extremes(simulated(text), "lost motion", {"ring tooth thickness": 0 if teeth else 1})
+    assert values == pytest.approx([own / (cos(radians(20.0)) * 156.0) for own in (0.05, 0.09)], rel=1e-4)
+
+
+def test_sizes_of_a_ring_are_between_balls() -> None:
+    """Oracle: E_st = d (inv α_Kt - inv α_Kt') with cos α_Kt = d_b cos(π/2z)/(M_dK + D_M); j_t = -E_st turns 2 a."""
+    ball, teeth = 6.65, 61
+    allowances: dict[str, tuple[float, str]] = {
+        "lower_backlash_allowance_balls_or_pins": (0.1, "mm"),
+        "upper_backlash_allowance_balls_or_pins": (0.2, "mm"),
+        "diameter_of_measuring_ball_or_pin": (ball, "mm"),
+    }
+    text, read = scene_of(planetary(series=("", "", ""), helix=15.0).having(12, **allowances))
+    assert read["tolerances"]["ring tooth thickness"]["measured"] == {"balls": "6.65 mm"}
+    assert read["tolerances"]["ring tooth thickness"]["distribution"] == ["100 um", "200 um"]
+    cosine, transverse = cos(radians(15.0)), atan(tan(radians(20.0)) / cos(radians(15.0)))
+    diameter = 4.0 * teeth / cosine
+    base, nearest = diameter * cos(transverse), cos(pi / 2 / teeth)
+    inv_k = pi / 2 / teeth + involute(transverse) - ball / (teeth * 4.0 * cos(radians(20.0)))
+    size = nearest * base / cos(brentq(lambda angle: involute(angle) - inv_k, 0.0, 1.0)) - ball
+    arcs = [diameter * (involute(acos(nearest * base / (size + own + ball))) - inv_k) for own in (0.1, 0.2)]
+    values = extremes(simulated(text), "lost motion", {"ring tooth thickness": 1})
+    assert values == pytest.approx([own * cosine / 156.0 for own in arcs], rel=1e-4)
+
+
 @pytest.mark.parametrize(
     ("angle", "module"),
     [((20.0, "°"), (2000.0, "mum")), ((pi / 9, "rad"), (2000.0, "um")), ((20.0, "deg"), (0.002, "m"))],
@@ -316,18 +358,24 @@ def test_a_scene_that_interferes_without_a_series_names_it() -> None:
     assert "'zz25'" in told
 
 
-def test_a_planetary_stage_is_one_set_with_one_contributor_a_pin() -> None:
-    """Lost motion at the carrier: (j_sp + j_rp)/(2 a), 370/156 000 and 540/156 000 rad, whatever the pins do."""
-    text, read = scene_of(planetary())
+@pytest.mark.parametrize(("helix", "distance"), [(0.0, "78 mm"), (15.0, "80.7515421 mm")])
+def test_a_planetary_stage_is_one_set_with_one_contributor_a_pin(helix: float, distance: str) -> None:
+    """Lost motion at the carrier: (j_sp + j_rp)/(2 a), 370/156 000 and 540/156 000 rad, whatever the pins do.
+
+    Of helical teeth arcs of the transverse section and the distance are both 1/cos β as large, in the same ranges.
+    """
+    text, read = scene_of(planetary(helix=helix))
     (move,) = read["moves"].values()
     assert move == {
         "kind": "planetary", "planet": "planet", "planets": 3, "carrier": "carrier",
-        "meshes": {"sun": "planet wheel", "ring": "planet wheel"}, "centre_distance": "78 mm",
+        "meshes": {"sun": "planet wheel", "ring": "planet wheel"}, "centre_distance": distance,
         "held": "ring", "input": "sun", "output": "carrier",
     }  # fmt: skip
     assert read["tolerances"]["set planet pins"] == {
-        "kind": "planet_pin", "of": "carrier", "direction": "radial", "distribution": {"fit": "js7", "of": "78 mm"},
+        "kind": "planet_pin", "of": "carrier", "direction": "radial", "distribution": {"fit": "js7", "of": distance},
     }  # fmt: skip
+    hands = [read["parts"][own].get("hand") for own in ("sun", "planet wheel", "ring")]
+    assert hands == (["left", "right", "right"] if helix else [None, None, None])
     simulation = simulated(text)
     pins = next(own for own in simulation.system.contributors if own.name == "set planet pins")
     assert len(pins.columns) == 3
@@ -362,9 +410,6 @@ def test_profile_shifts_that_the_file_does_not_say_are_those_without_backlash() 
     assert wheel.shift_guess
 
     def excess(shift: float) -> float:
-        def involute(angle: float) -> float:
-            return tan(angle) - angle
-
         rise = involute(radians(20)) + 2 * (0.2 + shift) * tan(radians(20)) / 60
         working = brentq(lambda angle: involute(angle) - rise, 0.01, 1.0, xtol=1e-15)
         return 60 * cos(radians(20)) / cos(working) - 60.6
@@ -467,6 +512,30 @@ def test_helical_gears_are_drafted_with_their_train() -> None:
     assert read["moves"]["slow"]["azimuth"] == "180 deg"  # back to the first axis
 
 
+def test_axial_plays_that_are_filled_in_screw_the_train() -> None:
+    """By hand: c κ of the held shaft and of the last, c |κ_in - κ_out| between, at 25 um each, κ = h tan β / r."""
+    text = gearbox_draft(two_stages().file()).scene()[0]
+    plays = re.sub(r"# (tolerances:|\w+ axial play)", r"\1", text)
+    assert {own["of"] for own in yaml.safe_load(plays)["tolerances"].values()} == {"one", "two", "three"}
+    system = simulated(plays).system
+    form = system.closed_form(next(own for own in system.measures if own.name == "lost motion of three"))
+    assert form is not None
+    teeth = ((27, 4.5, 21.0), (51, 4.5, -21.0), (23, 6.5, -10.0), (34, 6.5, 10.0))
+    a, b, c, d = (2.0 * sin(radians(beta)) / (z * module) for z, module, beta in teeth)
+    assert form.mean == pytest.approx(0.025 * ((abs(b) + abs(b - c)) * 23 / 34 + d), rel=1e-4)
+    assert a * 27 == pytest.approx(-b * 51)
+
+
+def test_the_classes_of_single_helical_teeth_are_drafted() -> None:
+    """Stated classes of one gear, and a pitch to fill in of the others; the train runs with all of them."""
+    text, read = scene_of(two_stages().having(6, tolerance_class_according_to_iso_1328_2013=("6", "none")))
+    classes = {own["kind"]: own["limits"]["iso_class"] for own in read["tolerances"].values()}
+    assert classes == {"pitch_deviation": 6, "profile_slope": 6, "helix_slope": 6}
+    simulation = simulated(filled_in(text))
+    names = {own.name for own in simulation.system.contributors}
+    assert {*names} >= {f"{gear} pitch" for gear in "abcd"} | {f"{own} axial play" for own in ("one", "two", "three")}
+
+
 def test_shafts_lie_where_the_file_has_them() -> None:
     """Two stages round a corner, the last shaft against the first one: axes of the scene against those of the file."""
     writer = Writer()
@@ -508,9 +577,10 @@ def test_two_load_paths_that_meet_again_have_one_output() -> None:
     assert [own.name for own in simulated(text).system.measures][-1] == "lost motion of out"
 
 
-def test_a_set_behind_a_stage_is_one_train() -> None:
+@pytest.mark.parametrize("helix", [0.0, 15.0])
+def test_a_set_behind_a_stage_is_one_train(helix: float) -> None:
     """A stage drives the sun's shaft: 2 · (1 + 61/17) turns of the motor a turn of the carrier, backwards."""
-    rexs = planetary()
+    rexs = planetary(helix=helix)
     number = len(rexs.components) + 1
     shaft = next(k for k, own in rexs.components.items() if own[1] == "sun shaft")
     writer = Writer("1.1", dict(rexs.components), list(rexs.relations))
@@ -524,6 +594,8 @@ def test_a_set_behind_a_stage_is_one_train() -> None:
     assert read["moves"]["train to carrier"] == {"kind": "train", "driven": "motor", "output": "carrier"}
     simulation = simulated(text.replace("output: carrier}", f"output: carrier, ratio: {-2 * (1 + 61 / 17):.6f}}}"))
     assert [own.name for own in simulation.system.measures] == ["before normal backlash", "lost motion of carrier"]
+    names = {own.name for own in simulated(filled_in(text)).system.contributors}
+    assert {own for own in names if own.endswith("play")} == ({"sun shaft axial play"} if helix else set())
 
 
 DOCTYPE = b'<!DOCTYPE model [<!ENTITY a "b">]>'
@@ -855,10 +927,11 @@ NAMED = {
     "ring": (
         planetary().having(
             12,
-            lower_backlash_allowance_referenced_to_span=(50.0, "mum"),
-            upper_backlash_allowance_referenced_to_span=(90.0, "mum"),
+            lower_backlash_allowance_referenced_to_span=(-90.0, "mum"),
+            upper_backlash_allowance_referenced_to_span=(50.0, "mum"),
         ),
-        "ring_gear 12 'ring': …_backlash_allowance_referenced_to_span: not read of a ring, whose sign is not told",
+        "ring_gear 12 'ring': …_backlash_allowance_referenced_to_span: not read of a ring with a limit below 0, whose "
+        "sign is not told",
     ),
     "run-out": (
         pair().having(5, runout_tolerance=(20.0, "mum")),
@@ -867,6 +940,12 @@ NAMED = {
     "classes of a set": (
         planetary().having(9, tolerance_class_according_to_iso_1328_2013=("6", "none")),
         "sun: class 6 of ISO 1328-1: single teeth of planetary sets do not deviate",
+    ),
+    "class of a gear in a ring": (
+        pair(helix=12.0).typed(8, "ring_gear").having(
+            8, helix_angle_reference_diameter=(12.0, "deg"), tolerance_class_according_to_iso_1328_2013=("6", "none"),
+        ),
+        "wheel: class 6 of ISO 1328-1: single teeth of meshes with rings do not deviate",
     ),
     "shafts apart": (
         pair().having(4, support_vector=((5.0, 0.0, 60.5), "mm")),

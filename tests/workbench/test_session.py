@@ -240,6 +240,25 @@ def test_a_class_of_a_drawing_is_a_value_of_a_field(tmp_path: Path) -> None:
     questions.close()
 
 
+def test_a_series_of_din_3967_is_a_value_of_a_field(tmp_path: Path) -> None:
+    """Its words stand in the field, with the next finer and coarser; numbers of a slider stay numbers."""
+    text = re.sub(r"(of: pinion\n    )distribution:.*", r"\1distribution: {din_3967: cd25}", FITTED, count=1)
+    questions = opened(tmp_path, text)
+    line = "pinion tooth thickness"
+    first = questions.sliders(asked())["sliders"]
+    assert 'value="cd25"' in first
+    assert "cd25: -" in first
+    assert [f'<option value="{own}">' in first for own in ("cd24", "cd25", "cd26", "cd27")] == [True] * 3 + [False]
+    for words in ("d 24", "{din_3967: d 24}"):
+        now = {line: words}
+        assert questions.card(asked(now))["written"] == {line: "d 24"}
+        assert 'value="d 24"' in questions.sliders(asked(now))["sliders"]
+        assert diff_lines(questions.keep(asked(now)))[1].strip() == "+    distribution: {din_3967: d 24}"
+    with pytest.raises(InputError, match="as in cd25, got 'cd40'"):
+        questions.card(asked({line: "cd40"}))
+    questions.close()
+
+
 def test_limits_of_a_size_are_the_words_of_a_field(tmp_path: Path) -> None:
     """Of the span itself, as typed; half as wide about the middle; other sizes typed there stay so in the file."""
     text = re.sub(

@@ -7,7 +7,7 @@ import numpy as np
 
 from tol3d.analyses.response import Response
 from tol3d.analyses.stated_changes import Change, changed, known, law_of
-from tol3d.analyses.stated_classes import sizes_of
+from tol3d.analyses.stated_classes import Sizes, class_size, sizes_of
 from tol3d.analyses.stated_limits import OtherLimits, limited
 from tol3d.errors import InputError
 from tol3d.files import Files
@@ -64,7 +64,7 @@ def scene_with(
         draw = response.drawn_by(line.contributors[0])
         for entry in line.entries:
             try:
-                specs[entry] = _stated(scene.tolerances[entry], change, draw, sizes.get(name), scene.files)
+                specs[entry] = _stated(scene.tolerances[entry], change, draw, sizes.get(name, {}), scene.files)
             except InputError as error:
                 raise InputError(f"{entry}: {error}") from None
     kept = with_tolerances(scene, specs) if specs else scene
@@ -75,7 +75,8 @@ def scene_with(
     return with_limits(kept, others) if others else kept
 
 
-def _stated(spec: ToleranceEntry, change: Change, draw: Draw, size: Quantity | None, files: Files) -> ToleranceEntry:
+def _stated(spec: ToleranceEntry, change: Change, draw: Draw, sizes: Sizes, files: Files) -> ToleranceEntry:
+    size = class_size(change.of_class, sizes)
     if change.of_class and size is not None and isinstance(spec, ToleranceSpec) and spec.distribution.between:
         return spec.of_class(change.of_class, size)
     spec = spec.in_numbers(draw)

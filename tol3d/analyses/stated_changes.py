@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.analyses.response import Response
-from tol3d.analyses.stated_classes import NO_SIZES, class_limits, is_class
+from tol3d.analyses.stated_classes import NO_SIZES, Sizes, class_limits, class_of
 from tol3d.analyses.stated_sizes import NO_NOMINALS, deviations_of
 from tol3d.errors import InputError
 from tol3d.scene.nearest import hint
@@ -20,7 +20,7 @@ from tol3d.study.system.other_laws import Zoned
 from tol3d.units import UNITS, Quantity, expectation
 
 RANGE: Final = re.compile(r"(?P<low>.*[^.\s])\s*\.\.\s*(?P<high>[^.].*|\.\d.*)")
-EXAMPLES: Final = "±10 um, +0.02/0 mm, -5 um..+10 um, H7 of a size, or 5 um of a zone or a scale"
+EXAMPLES: Final = "±10 um, +0.02/0 mm, -5 um..+10 um, H7 of a size, cd25 of teeth, or 5 um of a zone or a scale"
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Change:
         size: new size of its zone, or of a law stated by one number.
         factor: on its width.
         stays: which limit does, where it is scaled; default: see study/system/other_laws.py, `naturally_stays`.
-        of_class: the class of ISO 286 that its limits are of; "" for none.
+        of_class: the class that its limits are of, such as H7 or cd25; "" for none.
     """
 
     name: str
@@ -47,15 +47,15 @@ class Change:
 def change_of(
     response: Response,
     text: str,
-    sizes: Mapping[str, Quantity] = NO_SIZES,
+    sizes: Mapping[str, Sizes] = NO_SIZES,
     nominals: Mapping[str, float] = NO_NOMINALS,
 ) -> Change:
-    """Change by `--set NAME=VALUE`: `±10um`, `+0.02/0 mm`, `-5 um..+10 um`, `5 um`, `H7` of a known size, or sizes.
+    """Change by `--set NAME=VALUE`: `±10um`, `+0.02/0 mm`, `-5 um..+10 um`, `5 um`, a class such as `H7`, or sizes.
 
     Args:
         response: with the tolerances of the scene.
         text: as described.
-        sizes: nominal ones by line, at which a class is read.
+        sizes: nominal ones by line, at which classes are read.
         nominals: of measured sizes by line [mm], of which `23.349 / 23.386 mm` are limits.
 
     Raises:
@@ -64,8 +64,8 @@ def change_of(
     name, value = _split(response, "--set", text)
     contributor = next(own for own in response.contributors if own.name == response.lines[name][0])
     try:
-        if is_class(value):
-            return Change(name, limits=class_limits(value, sizes.get(name)), of_class=value)
+        if own_class := class_of(value):
+            return Change(name, limits=class_limits(own_class, sizes.get(name, {})), of_class=own_class)
         if sizes_written(value) is not None:
             law = response.drawn_by(contributor.name).distribution
             return Change(name, limits=deviations_of(law, value, nominals.get(name)))

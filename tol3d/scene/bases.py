@@ -207,7 +207,7 @@ class ToleranceSpec(ToleranceEntry):
         return tolerated_size(self.distribution.drawn)
 
     def of_class(self, tolerance_class: str, size: Quantity) -> Self:
-        """The tolerance as a scene writes it, by a class of ISO 286; its law is stated by limits on a drawing."""
+        """The tolerance as a scene writes it, by a class, such as H7; its law is stated by limits on a drawing."""
         return self.model_copy(update={"distribution": in_class(self.distribution, tolerance_class, size)})
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:

@@ -12,7 +12,7 @@ from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.limit_state import Side
 from tol3d.analyses.scope import Scope
 from tol3d.analyses.stated_changes import told
-from tol3d.analyses.stated_classes import class_words, is_class, neighbours
+from tol3d.analyses.stated_classes import class_of, class_words, neighbours
 from tol3d.analyses.stated_limits import FIELDS, NONE, changeable
 from tol3d.analyses.stated_sizes import sizes_of_law
 from tol3d.apps.workbench.session import LIMITS, Evaluated, Session
@@ -263,12 +263,13 @@ def _slider(session: Session, line: str, now: WhatIf, share: Share | None) -> Ma
     except InputError:
         other = draw
     each = f" · each of {len(names)}" if len(names) > 1 else ""
-    size, own_class, now_class = session.sizes.get(line), session.classes.get(line, ""), _class(now.get(line, ""))
-    stated = class_words(own_class, size) if own_class and size else told(contributor, draw)
+    sizes = session.sizes.get(line, {})
+    own_class, now_class = session.classes.get(line, ""), class_of(now.get(line, ""))
+    stated = class_words(own_class, sizes) if own_class and sizes else told(contributor, draw)
     words = [tag("span", tag("span", "was ", class_="was"), f"{stated}{each}", class_="dim")]
-    if now_class and size:
-        words.insert(0, tag("span", class_words(now_class, size), class_="class-words"))
-    offered = neighbours(now_class or own_class, size) if size else ()
+    if now_class and sizes:
+        words.insert(0, tag("span", class_words(now_class, sizes), class_="class-words"))
+    offered = neighbours(now_class or own_class, sizes) if sizes else ()
     scene_words, listed = (
         own_class or session.typed.get(line) or written(contributor, draw),
         "-".join(("classes", "of", *line.split())),
@@ -323,13 +324,8 @@ def written_words(session: Session, now: WhatIf) -> Mapping[str, str]:
             continue
         name = response.lines[line][0]
         own = response.drawn_by(name)
-        found[line] = _class(words) or _sizes(session, line, own) or written(known[name], own)
+        found[line] = class_of(words) or _sizes(session, line, own) or written(known[name], own)
     return found
-
-
-def _class(words: str) -> str:
-    """The class of ISO 286 that a change states; "" for none."""
-    return words.strip() if is_class(words) else ""
 
 
 def _sizes(session: Session, line: str, draw: Draw) -> str | None:

@@ -21,7 +21,7 @@ from tol3d.analyses.moved_values import MovedValues
 from tol3d.analyses.response import Response, Values, response_of
 from tol3d.analyses.results import pilots_of, results_of
 from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of
-from tol3d.analyses.stated_classes import classes_of, sizes_of
+from tol3d.analyses.stated_classes import Sizes, classes_of, sizes_of
 from tol3d.analyses.stated_limits import OtherLimits, limited, limits_of_text
 from tol3d.analyses.stated_sizes import nominals_of, typed_of
 from tol3d.apps.workbench.words import OPTION
@@ -36,7 +36,6 @@ from tol3d.study.runs.summary.judged import Accepted, JudgedMeasure, demand_of
 from tol3d.study.runs.summary.sample import Sample
 from tol3d.study.system.measure import Measure
 from tol3d.study.trials.draws import KeptDraws
-from tol3d.units import Quantity
 
 Own = TypeVar("Own")
 AT_ONCE: Final = 0.3
@@ -295,7 +294,7 @@ class Session:
         return _in_a_page(read, self.response, f"{line}={words}")
 
     @cached_property
-    def sizes(self) -> Mapping[str, Quantity]:
+    def sizes(self) -> Mapping[str, Sizes]:
         """Nominal sizes by line, at which tolerance classes are read."""
         return sizes_of(self.scene, self.simulation.lines)
 

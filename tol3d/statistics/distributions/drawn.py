@@ -155,7 +155,7 @@ def is_drawn(value: Any) -> bool:
     """True if a value is limits as a drawing writes them, right or wrong."""
     if isinstance(value, str):
         signs = any(sign in value for sign in PLUS_MINUS) or "/" in value
-        return signs or _is_series(value) or sizes_written(value) is not None
+        return signs or is_series(value) or sizes_written(value) is not None
     if isinstance(value, dict):
         return "kind" not in value and any(key in value for key in KEYS)
     return isinstance(value, list | tuple)
@@ -169,7 +169,7 @@ def _is(read: Callable[[str], object], text: str) -> bool:
     return True
 
 
-_is_series, _is_field = partial(_is, din_3967.series), partial(_is, din_3967.field)
+is_series, is_field = partial(_is, din_3967.series), partial(_is, din_3967.field)
 
 
 def drawn_law(value: Any) -> DistributionSpec:
@@ -331,18 +331,22 @@ def limits_written(text: str) -> tuple[Quantity, Quantity] | None:
 
 
 def in_class(spec: DistributionSpec, tolerance_class: str, size: Quantity) -> DistributionSpec:
-    """Limits on a drawing as those of a class of ISO 286, by the law that they have.
+    """Limits on a drawing as those of a class of ISO 286 or DIN 3967, by the law that they have.
 
     Args:
         spec: limits as a drawing writes them.
-        tolerance_class: such as H7.
+        tolerance_class: such as H7 or cd25.
         size: nominal.
     """
     drawn = spec.drawn if isinstance(spec.drawn, dict) else {}
-    fit = {"fit": tolerance_class, "of": drawn.get("of", str(size))}
-    written = {"din_3964": tolerance_class} if "din_3964" in drawn and _is_field(tolerance_class) else fit
-    written |= {"law": drawn["law"]} if "law" in drawn else {}
     between: LimitLaw = spec.between
+    law = {"law": drawn["law"]} if "law" in drawn else {}
+    if is_series(tolerance_class):
+        written = {"din_3967": tolerance_class, **law}
+        return UnsizedSpec(standard="din_3967", word=tolerance_class, law=between, written=written).of(size.internal)
+    fit = {"fit": tolerance_class, "of": drawn.get("of", str(size))}
+    written = {"din_3964": tolerance_class} if "din_3964" in drawn and is_field(tolerance_class) else fit
+    written |= law
     return between.between(*_limits(FitSpec.model_validate(fit))).as_drawn(written, between)
 
 
@@ -425,7 +429,7 @@ def _of_list(value: Any, field: str) -> tuple[Quantity, Quantity]:
 
 
 def _of_text(value: str, field: str) -> tuple[Quantity, Quantity]:
-    if _is_series(value):
+    if is_series(value):
         raise refused(field, f"{{din_3967: {value}}}", value)
     text = value.translate(MINUS) if len(value) <= LONGEST else ""
     if match := SYMMETRIC.fullmatch(text):

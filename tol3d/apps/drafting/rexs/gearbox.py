@@ -336,3 +336,10 @@ class Gearbox:
     def shaft_of(self, gear: Gear) -> Shaft | None:
         """The shaft that carries a gear; None for a gear that is its own."""
         return next((own for own in self.shafts if any(each.id == gear.id for each in own.gears)), None)
+
+    @property
+    def single_teeth(self) -> list[Gear]:
+        """Gears whose single teeth deviate in scenes: those of external meshes alone."""
+        in_rings = {gear.id for stage in self.stages if stage.ring for gear in stage.gears}
+        found = {gear.id: gear for stage in self.stages for gear in stage.gears if gear.id not in in_rings}
+        return list(found.values())

@@ -118,27 +118,40 @@ def _allowances(gear: Component, left: LeftOut) -> Iterator[Allowance]:
     )
     if chordal is not None:
         yield Allowance("arc", *chordal, "chordal_tooth_thickness_…_deviation")
-    of_ring = gear.type == "ring_gear"
     span = left.spared(
         limits_of, gear, "lower_backlash_allowance_referenced_to_span", "upper_backlash_allowance_referenced_to_span"
     )
-    if span is not None and of_ring:
-        left.lines.append(
-            f"{gear}: …_backlash_allowance_referenced_to_span: not read of a ring, whose sign is not told"
-        )
-    elif span is not None:
+    of_ring, source = gear.type == "ring_gear", "…_backlash_allowance_referenced_to_span"
+    if span is not None and _sign_is_told(gear, span, source, left):
         teeth = left.spared(gear.whole, "number_of_teeth_for_span_measurement")
-        measured = "normal" if teeth is None else f"{{span: {teeth}}}"
-        yield Allowance(measured, *span, "…_backlash_allowance_referenced_to_span")
+        if teeth is not None:
+            yield Allowance(f"{{span: {teeth}}}", *span, source)
+        else:
+            yield Allowance("normal", *((-span[1], -span[0]) if of_ring else span), source)
     pins = left.spared(
         limits_of, gear, "lower_backlash_allowance_balls_or_pins", "upper_backlash_allowance_balls_or_pins"
     )
-    diameter = left.spared(gear.number, "diameter_of_measuring_ball_or_pin", "length")
-    if pins is not None and (of_ring or diameter is None):
-        why = "of a ring, whose sign is not told" if of_ring else "without diameter_of_measuring_ball_or_pin"
-        left.lines.append(f"{gear}: …_backlash_allowance_balls_or_pins: not read {why}")
-    elif pins is not None and diameter is not None:
-        yield Allowance(f"{{pins: {length(diameter)}}}", *pins, "…_backlash_allowance_balls_or_pins")
+    source = "…_backlash_allowance_balls_or_pins"
+    if pins is not None and _sign_is_told(gear, pins, source, left):
+        diameter = left.spared(gear.number, "diameter_of_measuring_ball_or_pin", "length")
+        if diameter is None:
+            left.lines.append(f"{gear}: {source}: not read without diameter_of_measuring_ball_or_pin")
+        else:
+            # no straight pin fits between the flanks of a helical ring
+            over = "balls" if of_ring else "pins"
+            yield Allowance(f"{{{over}: {length(diameter)}}}", *pins, source)
+
+
+def _sign_is_told(gear: Component, limits: tuple[float, float], source: str, left: LeftOut) -> bool:
+    """True of limits that say which way they count; of a ring those above 0, by which its teeth are thinner.
+
+    Its span over spaces and its size between pins grow as its teeth get thinner, which allowances for backlash make
+    them. Limits below 0 may count diameters of rings as negative, or the thickness.
+    """
+    if gear.type != "ring_gear" or limits[0] >= 0.0:
+        return True
+    left.lines.append(f"{gear}: {source}: not read of a ring with a limit below 0, whose sign is not told")
+    return False
 
 
 def limits_of(component: Component, lower: str, upper: str) -> tuple[float, float] | None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tol3d.apps.drafting.entry import Entry, Wording
-from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, PlanetarySet, Stage
+from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, PlanetarySet, Shaft, Stage
 from tol3d.apps.drafting.rexs.named import Named
 from tol3d.apps.drafting.words import comment, length, number, scalar
 
@@ -35,7 +35,7 @@ def deviations(lower: float, upper: float) -> str:
 
 
 def tolerances(gearbox: Gearbox, names: Named, bearings: Sequence[Bearing]) -> Iterator[Entry]:
-    """Tolerances, kind by kind: thickness, centre distances, pins, single teeth, clearances.
+    """Tolerances, kind by kind: thickness, centre distances, pins, single teeth, clearances, axial plays.
 
     Args:
         gearbox: that they are of.
@@ -52,11 +52,13 @@ def tolerances(gearbox: Gearbox, names: Named, bearings: Sequence[Bearing]) -> I
         yield _centre_distance(stage, names)
     for own in gearbox.sets:
         yield _pins(own, names)
-    for gear in meshing:
-        if not gear.helical:  # scenes have no deviations of their single teeth
-            yield from _single_teeth(gear, names)
+    for gear in gearbox.single_teeth:
+        yield from _single_teeth(gear, names)
     for bearing in bearings:
         yield _clearance(bearing, names)
+    for shaft in names.shafts:
+        if any(gear.helical for gear in shaft.gears):
+            yield _axial_play(shaft, names)
 
 
 def _entry(name: str, words: Sequence[Wording], label: str, blank: bool = False) -> Entry:
@@ -142,3 +144,12 @@ def _clearance(bearing: Bearing, names: Named) -> Entry:
         return _entry(title, [Wording((line,), told)], label, blank=True)
     line = f"{start}{deviations(*bearing.clearance)}}}"
     return _entry(title, [Wording((line,), comment(f"bearing {bearing.id}: {bearing.source}"))], label)
+
+
+def _axial_play(shaft: Shaft, names: Named) -> Entry:
+    """Play of a shaft along its axis, through which the thrust of its helical gears moves it at each reversal."""
+    of = names.of(shaft.ids[0])
+    title = names.titles.new(f"{of} axial play", "axial play")
+    line = f"{{kind: axial_play, of: {scalar(of)}, distribution: {{kind: uniform, lower: 0 um, upper: 50 um}}}}"
+    told = f"{ASKED}limits of the play between its stops"
+    return _entry(title, [Wording((line,), told)], f"shaft {shaft.ids[0]}: axial play", blank=True)

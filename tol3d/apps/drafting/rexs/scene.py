@@ -179,12 +179,14 @@ def _rounding_words(stage: Stage) -> str:
 
 def _unsaid(gearbox: Gearbox, names: Named) -> Iterator[str]:
     """Lines on what the parts of a scene cannot have."""
-    meshing = {gear.id for stage in gearbox.stages for gear in stage.gears}
-    for own in gearbox.sets:
-        for gear in {gear.id: gear for mesh in own.meshes for gear in mesh}.values():
-            if gear.classes and gear.id not in meshing:
+    drafted = {gear.id for gear in gearbox.single_teeth}
+    in_rings = {gear.id: gear for stage in gearbox.stages if stage.ring for gear in stage.gears}
+    in_sets = {gear.id: gear for own in gearbox.sets for mesh in own.meshes for gear in mesh}
+    for where, gears in (("planetary sets", in_sets), ("meshes with rings", in_rings)):
+        for gear in gears.values():
+            if gear.classes and gear.id not in drafted:
                 grades = ", ".join(map(str, sorted({*gear.classes.values()})))
-                yield f"{names.of(gear)}: class {grades} of ISO 1328-1: single teeth of planetary sets do not deviate"
+                yield f"{names.of(gear)}: class {grades} of ISO 1328-1: single teeth of {where} do not deviate"
 
 
 def _check(text: str) -> None:
