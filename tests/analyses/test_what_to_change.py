@@ -39,7 +39,7 @@ from tol3d.scene import Scene
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import load, simulation_of
 from tol3d.statistics.distributions.normal import Normal
-from tol3d.study.system.draw import Scalar
+from tol3d.study.system.draw import Each, Scalar
 from tol3d.study.system.plain import PlainContributor, PlainMeasure, PlainSystem
 from tol3d.study.trials.simulation import Simulation
 from tol3d.study.trials.study import Study
@@ -215,6 +215,18 @@ def test_a_mean_off_nominal_is_told_by_contributor() -> None:
     assert taken["x1"] == pytest.approx((0.0, 0.9), abs=1e-6)
     assert taken["x2"] == pytest.approx((0.5, 0.0), abs=1e-6)
     assert abs(own.taken_together) < 4 * own.taken_error
+
+
+def test_the_mean_of_several_equal_components_moves_their_least_one_once() -> None:
+    """Of the least of three gaps, all 0.7 at the mean build, and half of another deviation."""
+    contributors = (
+        PlainContributor("g", "x", Each(Normal(0.7, 0.2), ("1", "2", "3")), "um", 1.0),
+        PlainContributor("x", "x", Scalar(Normal(1.0, 0.1)), "um", 1.0),
+    )
+    measure = PlainMeasure("value", "value", None, 1.0, unit="um", per_internal=1.0)
+    system = Formula("least", contributors, (measure,), lambda x: x[:, :3].min(axis=1) + 0.5 * x[:, 3])
+    taken = {each.contributor: each.first_order for each in asked(response_of(Simulation(system, Study(4000)))).taken}
+    assert taken == pytest.approx({"g": 0.7, "x": 0.5}, abs=1e-6)
 
 
 def test_a_nominal_that_moves_nothing_in_one_direction_moves_no_mean() -> None:

@@ -247,6 +247,11 @@ def test_a_tilt_in_the_plane_of_the_axes_screws_the_teeth(kind: str, request: py
         ({"parts.wheel.helix_angle": "-30 deg"}, "expected an angle of zero or more .hand gives the sense"),
         ({"parts.wheel.normal_module": "1 mm"}, "of a helical gear it is the normal module"),
         ({"parts.wheel.transverse_module": "1 mm"}, r"the normal one, m_t cos\(helix_angle\)"),
+        (
+            {"parts.wheel.module": "1.1547 mm", "parts.pinion.module": "1.1547 mm"},
+            "; module is the normal one, 1.1547 mm",
+        ),
+        ({"parts.wheel.kind": "spur_gear"}, "got 'helix_angle'; gears of kind helical_gear or internal_gear have it"),
         ({"measures.arc.read_at": "mean_section"}, "measures.arc.read_at: expected face, got mean_section"),
         ({"measures.arc.tooth": "driver"}, "measures.arc.tooth: expected all, got driver"),
     ],

@@ -1,6 +1,7 @@
 """Helical gears and pairs: worked cases, limits, spans, balls and pins against searches of sampled flanks."""
 
 import math
+import re
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -318,8 +319,13 @@ def test_overlap_carries_a_pair_that_its_profile_alone_would_not() -> None:
     )
     steep.refuse_interference()
     narrow = SpurPair(replace(steep.pinion, face_width=0.5), replace(steep.wheel, face_width=0.5), 19.3)
-    with pytest.raises(GeometryError, match=r"total contact ratio 0\.\d+ \(0\.\d+ over the profile\) is below 1"):
+    words = r"total contact ratio 0\.\d+ \(0\.\d+ over the profile\) is below 1 .* face narrower than ([\d.]+) mm"
+    with pytest.raises(GeometryError, match=words) as caught:
         narrow.refuse_interference()
+    stated = re.search(words, str(caught.value))
+    assert stated is not None
+    least = math.pi * steep.pinion.module / math.sin(steep.pinion.helix_angle) * (1.0 - steep.contact_ratio)
+    assert float(stated[1]) == pytest.approx(least, abs=1e-4)
 
 
 def test_gears_whose_axes_would_cross_are_refused() -> None:

@@ -111,9 +111,14 @@ def rates_of(response: Response, deviations: Array, positions: Mapping[str, Arra
     variances = np.array(
         [_variances(drawn[:, :, own], response.draws[name], off[:, own]) for name, own in response.slices.items()]
     ).reshape(-1, rows, len(response.measures))
-    first = np.array([middle[:, own] @ mean[own] for own in response.slices.values()]).reshape(
-        -1, len(response.measures)
-    )
+    first = np.array(
+        [
+            middle[:, own] @ mean[own]
+            if np.count_nonzero(mean[own]) < 2
+            else _moved_together(response, own, places, rows)
+            for own in response.slices.values()
+        ]
+    ).reshape(-1, len(response.measures))
     nominal, built = (_at(response, row, places, rows) for row in (zero, mean))
     second = _second(response, mean, built, places, rows)
     by_contributor = np.array([second[:, own].sum(axis=1) for own in response.slices.values()]).reshape(first.shape)
@@ -195,6 +200,16 @@ def _at(response: Response, row: Array, positions: Mapping[str, Array], count: i
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         return np.asarray(np.nanmean(found, axis=0))
+
+
+def _moved_together(response: Response, own: slice, positions: Mapping[str, Array], count: int) -> Array:
+    """What several components move by their means at once (measures,), the other contributors half way to theirs.
+
+    Slopes of each by itself do not add up to it where the least of them decides, as of planets with equal gaps.
+    """
+    low, high = response.mean / 2, response.mean / 2
+    low[own], high[own] = 0.0, response.mean[own]
+    return np.asarray(np.nan_to_num(_at(response, high, positions, count) - _at(response, low, positions, count)))
 
 
 def _second(response: Response, mean: Array, built: Array, positions: Mapping[str, Array], rows: int) -> Array:

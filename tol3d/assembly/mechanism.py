@@ -57,7 +57,8 @@ OTHER_KINDS: Final = (
     ("line", "write axis"),
     *((word, "write three_two_one") for word in ("3-2-1", "3_2_1", "321", "three_two_one_locators", "locators")),
     *((word, "write six_plane") for word in ("six_point", "6_point", "6-point", "6_plane")),
-    *((word, "write fix") for word in ("fixed", "ground", "grounded")),
+    ("fixed", "write fix, or constant of a distribution"),
+    *((word, "write fix") for word in ("ground", "grounded")),
     *((word, "write mate, with such a relation in its relations") for word in ("coincident", "flush_mate", "tangent")),
     *(
         (word, "write pattern, with a bolt in its pairs, or weld")

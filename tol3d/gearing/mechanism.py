@@ -47,6 +47,7 @@ BACKLASH: Final = "write normal_backlash, circumferential_backlash, angular_back
 ANY_GEAR: Final = "write spur_gear, helical_gear, bevel_gear or, of a ring, internal_gear"
 NO_HELIX: Final = "spiral, hypoid and worm gears are not supported: docs/limits.md"
 HELIX_SIGN: Final = "write helix_angle, and hand: right or left"
+HELICAL: Final = "gears of kind helical_gear or internal_gear have it; teeth of spur and bevel gears are straight"
 
 OTHER_KINDS: Final = (
     *((word, RUN_OUT) for word in ("F_r", "Fr", "gear_run_out", "radial_run_out")),
@@ -77,6 +78,7 @@ OTHER_KEYS: Final = (
     ("normal_module", "write module: of a helical gear it is the normal module"),
     ("transverse_module", "write module: the normal one, m_t cos(helix_angle)"),
     *((word, HELIX_SIGN) for word in ("helix", "helix_direction", "beta", "spiral_angle", "lead")),
+    *((word, HELICAL) for word in ("helix_angle", "hand")),
 )
 
 GEARING: Final = Mechanism(

@@ -238,11 +238,13 @@ class CylindricalPair(RollingPair):
     def _refuse_short_contact(self) -> None:
         if self.contact_ratio + self.overlap_ratio >= 1.0:
             return
-        words = f"contact ratio {self.contact_ratio:.4f}"
+        words, faces = f"contact ratio {self.contact_ratio:.4f}", ""
         if self.overlap_ratio:
             words = f"total {words[:-6]}{self.total_contact_ratio:.4f} ({self.contact_ratio:.4f} over the profile)"
+            least = self.common_face * (1.0 - self.contact_ratio) / self.overlap_ratio
+            faces = f", on a common face narrower than {least:.4f} mm"
         raise GeometryError(
-            f"{words} is below 1 at centre distance {self.centre_distance:g} mm: the teeth lose contact"
+            f"{words} is below 1 at centre distance {self.centre_distance:g} mm: the teeth lose contact{faces}"
         )
 
     def _along(self, working: Array, displaced: Displaced) -> Array:

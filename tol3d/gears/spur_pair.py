@@ -41,9 +41,10 @@ class SpurPair(CylindricalPair):
         if crossed := crossed_axes(self.pinion, self.wheel):
             raise GeometryError(crossed)
         if self.centre_distance <= self.base_radii:
+            normal = f"; module is the normal one, {self.pinion.module:g} mm" if self.pinion.helix_angle else ""
             raise GeometryError(
                 f"centre distance {self.centre_distance:g} mm: the teeth interfere, the base circles alone "
-                f"need more than {self.base_radii:.4f} mm"
+                f"need more than {self.base_radii:.4f} mm{normal}"
             )
 
     @property

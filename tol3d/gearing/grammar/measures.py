@@ -105,7 +105,7 @@ class NormalBacklashSpec(MeshMeasureSpec):
 
 
 class CircumferentialBacklashSpec(MeshMeasureSpec):
-    """j_wt, a length: the free arc on the working pitch circle."""
+    """j_wt, a length: the free arc on the working pitch circle of the nominal centre distance."""
 
     dimension: ClassVar[Dimension] = "length"
 

@@ -11,7 +11,7 @@ from contextvars import ContextVar
 from functools import partial
 from typing import Annotated, Any, Final, Self
 
-from pydantic import AfterValidator, Field, TypeAdapter, ValidationError, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from tol3d.errors import InputError
@@ -46,6 +46,11 @@ def _of_standard(read: Callable[[str], object], text: str) -> str:
         expected, _, got = str(error).removeprefix("expected ").partition(", got ")
         raise refused("", expected, got) from None
     return text
+
+
+def _digits(value: object) -> object:
+    """A number as its text: it is no class alone, and the standard's sentence says which are."""
+    return str(value) if type(value) is int else value
 
 
 _series, _field = partial(_of_standard, din_3967.series), partial(_of_standard, din_3967.field)
@@ -95,14 +100,16 @@ class GradeSpec(Strict):
 class SeriesSpec(Strict):
     """`{din_3967: cd25}`: allowances of the tooth thickness of a cylindrical gear, by its reference diameter."""
 
-    din_3967: Annotated[str, AfterValidator(_series)] = Field(description="letters and number, such as cd25")
+    din_3967: Annotated[str, BeforeValidator(_digits), AfterValidator(_series)] = Field(
+        description="letters and number, such as cd25"
+    )
     law: StatedLimitLaw | None = Field(default=None, description="default: the scene's default_law")
 
 
 class FieldSpec(Strict):
     """`{din_3964: js7}`: allowances of the centre distance of cylindrical gears, by its nominal value."""
 
-    din_3964: Annotated[str, AfterValidator(_field)] = Field(
+    din_3964: Annotated[str, BeforeValidator(_digits), AfterValidator(_field)] = Field(
         description="js5 to js11; a number alone is a class of axes too"
     )
     law: StatedLimitLaw | None = Field(default=None, description="default: the scene's default_law")
