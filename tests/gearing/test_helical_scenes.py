@@ -2,6 +2,7 @@
 
 import math
 import re
+from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -304,6 +305,32 @@ def test_entries_that_know_no_helix_refuse_it(section: str, entry: str, words: s
     (path := tmp_path / "added.yaml").write_text(added.replace(f"{section}:\n", f"{section}:\n  {entry}\n", 1))
     with pytest.raises(SceneError, match=re.escape(words)):
         model_of_scene(path)
+
+
+@pytest.mark.parametrize(
+    ("kind", "of", "limit"),
+    [
+        ({"z2": 40, "a": 121.4}, "138.5640646 mm", 40.0),  # m_n z is 120 mm, whose range has 30 um
+        ({"wheel": "internal_gear", "mate": "right", "z2": 93, "a": 109.0}, "322.1614502 mm", 52.0),  # 279 mm: 40 um
+    ],
+)
+def test_a_graded_run_out_of_teeth_is_that_of_the_reference_diameter(
+    kind: dict[str, Any], of: str, limit: float, tmp_path: Path
+) -> None:
+    """m_n z/cos(beta), of a ring too; F_r of grade 7 at m_n 3 by the table of ISO 1328-2:1997."""
+    own = {"z1": 30, "m": 3, "beta": 30, "b1": 30, "b2": 30, "x1": 0, "x2": 0, **kind}
+
+    def checked(stated: str) -> Model:
+        grade = f"distribution: {{iso_1328_2: F_r 7, module: 3 mm, of: {stated}, law: {{kind: uniform}}}}"
+        (path := tmp_path / "graded.yaml").write_text(
+            text(f"tolerances:\n  own: {{kind: tooth_run_out, of: wheel, {grade}}}\n", **own)
+        )
+        return model_of_scene(path)
+
+    with pytest.raises(SceneError, match=f"of: expected {of[:5]}.*, as 'wheel' has it"):
+        checked(f"{3 * own['z2']} mm")
+    (contributor,) = checked(of).contributors
+    assert 2e3 * contributor.distribution.high == pytest.approx(limit, abs=1e-9)  # teeth off by half of it
 
 
 class Unknown(MoveSpec):
