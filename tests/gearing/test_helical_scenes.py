@@ -170,10 +170,17 @@ PAIRS = 200
 @pytest.mark.slow
 @pytest.mark.parametrize("inside", [False, True])
 def test_differences_of_the_methods_fall_to_a_quarter_as_deviations_are_halved(inside: bool, tmp_path: Any) -> None:
-    """All tolerances of random pairs at once; the backlash itself is one of them, as contact lines end j apart."""
-    rng, ratios = np.random.default_rng(2), []
-    for _ in range(PAIRS):
+    """All tolerances of random pairs at once; the backlash itself is one of them, as contact lines end j apart.
+
+    Left out are rings that touch their gear less than the largest backlash above the beginning of its involute: on the
+    other side their tips may reach below it, and the exact engine calls such builds out of range.
+    """
+    rng, ratios = np.random.default_rng(2), list[float]()
+    while len(ratios) < PAIRS:
         model = random_model(rng, tmp_path, inside=inside)
+        pair = model.meshes[0].pair
+        if isinstance(pair, InternalPair) and pair.inner.base_radius * (pair.start_roll - pair.inner.form_roll) < 0.15:
+            continue
         # tips of rings reach far where gears grow by themselves
         deviations, angles = random_builds(model, rng, kelvin=100.0 if inside else 500.0)
         whole, half = (np.sqrt((difference(model, own, angles) ** 2).mean()) for own in (deviations, deviations / 2))
