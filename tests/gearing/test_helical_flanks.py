@@ -11,7 +11,10 @@ from gear_trials import model_of_scene
 from gearing.deviating_pair import draws
 from oracles.screw_flanks import Placed, ScrewGear, lag_in_slices
 
+from tol3d.cad.solids import measuring_strips
 from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.engines.gaps import fcl_engine
+from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gears import SpurPair
@@ -160,6 +163,30 @@ def test_the_stack_up_agrees_trial_by_trial_to_the_second_order(kinds: tuple[str
     assert (rms[0] < 0.03).all(), rms
     assert ((rms[1] < rms[0] / 2**1.5) | (rms[1] < 1e-3)).all(), rms
     assert 1e3 * builds.read().gap.std() > 1.0  # um: what both methods follow
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "kinds", [("pitch_deviation",), ("profile_slope",), ("helix_slope",), ("pitch_deviation", *SLOPES)]
+)
+def test_strips_of_deviated_flanks_touch_within_their_chord_error(kinds: tuple[str, ...], tmp_path: Path) -> None:
+    """Chords lie inside the teeth: the driven gear turns on by up to both errors, and its gap is wider by up to four.
+
+    Helix slopes alone take 5 to 9 um here, so that ends moved by half of it, or alike, would stand out.
+    """
+    builds = drawn(tolerances(*kinds), tmp_path, 8)
+    strips = {part.name: measuring_strips(part.gear, 128) for part in builds.model.gears}
+    made = ExactEngine(builds.model).build(builds.deviations)
+    engine = fcl_engine(builds.model, strips)
+    seat, exact = Meshing(engine, builds.model, builds.mesh, made, Reading()).seat(builds.angle), builds.read()
+    assert (seat.status == 0).all()
+    turned = builds.pair.wheel.section_arm * (seat.driven_angle - exact.driven_angle) * -builds.mesh.working_flank
+    wider = seat.non_working.smallest() - exact.gap
+    chord, pulled = sum(own.chord_error for own in strips.values()), 0.0073e-3  # mm; a touching edge's slack, in fcl.py
+    for off, errors in ((turned, chord), (wider, 2 * chord)):
+        assert off.max() < errors + 2 * pulled
+        assert off.min() > -2 * pulled
+    assert np.ptp(exact.gap) > 40 * chord  # what both follow
 
 
 def test_transmission_error_of_both_sides_follows_single_flanks(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import math
 import re
+from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -63,12 +64,12 @@ measures:
   normal backlash: {kind: normal_backlash, of: gear pair}
   arc: {kind: circumferential_backlash, of: gear pair}
   free turn: {kind: angular_backlash, of: gear pair}
-  drive TE: {kind: transmission_error, of: gear pair, over: turn, take: curve, positions: 40}
+  drive TE: {kind: transmission_error, of: gear pair, over: turn, take: curve, positions: %(positions)s}
 study: {trials: 100, seed: 1}
 """
 WORKED: dict[str, Any] = {
     "z1": 23, "z2": 67, "m": 1, "beta": 30, "hand": "right", "mate": "left", "b1": 16, "b2": 11, "x1": 0.55,
-    "x2": 0.5441135839, "a": 53, "wheel": "helical_gear",
+    "x2": 0.5441135839, "a": 53, "wheel": "helical_gear", "positions": 40,
 }  # fmt: skip
 RING: dict[str, Any] = {
     "wheel": "internal_gear", "z1": 27, "z2": 79, "beta": 15, "mate": "right", "b1": 12, "b2": 10, "x1": 0.2,
@@ -113,7 +114,9 @@ def difference(model: Model, deviations: Array, angles: Array) -> Array:
     return np.asarray(stack_of(model, mesh, Reading()).normal_backlash(deviations, angles) - found.gap)
 
 
-def random_model(rng: np.random.Generator, tmp_path: Any, *, inside: bool = False) -> Model:
+def random_model(
+    rng: np.random.Generator, tmp_path: Any, *, inside: bool = False, tolerances: str = TOLERANCES
+) -> Model:
     """A pair with all tolerances, at the distance at which its nominal teeth have no backlash."""
     while True:
         z1, z2 = rng.integers(18, 70, 2).tolist()
@@ -123,15 +126,16 @@ def random_model(rng: np.random.Generator, tmp_path: Any, *, inside: bool = Fals
         hand, mate = ("right", "left") if rng.random() < 0.5 else ("left", "right")
         mate = hand if inside else mate
         b1, b2, (x1, x2) = float(m * rng.uniform(8, 16)), float(m * rng.uniform(8, 16)), rng.uniform(0.0, 0.3, 2)
-        own = {"z1": z1, "z2": z2, "m": m, "beta": beta, "hand": hand, "mate": mate, "b1": b1, "b2": b2}
+        own: dict[str, Any] = {"z1": z1, "z2": z2, "m": m, "beta": beta, "hand": hand, "mate": mate, "b1": b1, "b2": b2}
+        own["positions"] = 16 * z1  # what deviating teeth need
         apart = m * ((z1 + z2) / 2 / math.cos(math.radians(beta)) + x1 + x2 + 0.05)
         if inside:
             own, x2 = {**own, "wheel": "internal_gear"}, -x1
             apart = m * ((z2 - z1) / 2 / math.cos(math.radians(beta)) - 0.02)
         path = tmp_path / "random.yaml"
         try:
-            for _ in range(2):
-                path.write_text(text(**own, x1=float(x1), x2=float(x2), a=f"{apart:.12f}"))
+            for made in ("", tolerances):
+                path.write_text(text(made, **own, x1=float(x1), x2=float(x2), a=f"{apart:.12f}"))
                 model = model_of_scene(path)
                 pair = model.meshes[0].pair
                 assert isinstance(pair, SpurPair | InternalPair)
@@ -141,25 +145,76 @@ def random_model(rng: np.random.Generator, tmp_path: Any, *, inside: bool = Fals
         return model
 
 
+def random_builds(model: Model, rng: np.random.Generator, *, kelvin: float, flanks: float = 1.0) -> tuple[Array, Array]:
+    """Deviations of some um, tilts of some tenths of a mrad and temperatures, thinner teeth, and angles of the driver.
+
+    Args:
+        model: of the builds.
+        rng: draws them.
+        kelvin: temperatures, per mm of the others.
+        flanks: of single flanks, per mm of the others.
+    """
+    deviations = rng.uniform(-1, 1, (60, model.component_count)) * 0.008
+    for contributor in model.contributors:
+        columns = model.component_slices[contributor.name]
+        factor = flanks if contributor.kind in FLANKS else {"mrad": 0.01, "K": kelvin}.get(contributor.unit, 1.0)
+        deviations[:, columns] *= factor
+        if contributor.kind == "tooth_thickness":
+            deviations[:, columns] -= 0.05
+    return deviations, rng.uniform(-3.0, 3.0, len(deviations))
+
+
+PAIRS = 200
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("inside", [False, True])
 def test_differences_of_the_methods_fall_to_a_quarter_as_deviations_are_halved(inside: bool, tmp_path: Any) -> None:
-    """All tolerances of random pairs at once; the backlash itself is one of them, as contact lines end j apart."""
-    rng, ratios = np.random.default_rng(2), []
-    for _ in range(60):
+    """All tolerances of random pairs at once; the backlash itself is one of them, as contact lines end j apart.
+
+    Left out are rings that touch their gear less than the largest backlash above the beginning of its involute: on the
+    other side their tips may reach below it, and the exact engine calls such builds out of range.
+    """
+    rng, ratios = np.random.default_rng(2), list[float]()
+    while len(ratios) < PAIRS:
         model = random_model(rng, tmp_path, inside=inside)
-        deviations = rng.uniform(-1, 1, (60, model.component_count)) * 0.008
-        for contributor in model.contributors:
-            columns = model.component_slices[contributor.name]
-            kelvin = 100.0 if inside else 500.0  # tips of rings reach far where gears grow by themselves
-            deviations[:, columns] *= {"mrad": 0.01, "K": kelvin}.get(contributor.unit, 1.0)
-            if contributor.kind == "tooth_thickness":
-                deviations[:, columns] -= 0.05
-        angles = rng.uniform(-3.0, 3.0, len(deviations))
+        pair = model.meshes[0].pair
+        if isinstance(pair, InternalPair) and pair.inner.base_radius * (pair.start_roll - pair.inner.form_roll) < 0.15:
+            continue
+        # tips of rings reach far where gears grow by themselves
+        deviations, angles = random_builds(model, rng, kelvin=100.0 if inside else 500.0)
         whole, half = (np.sqrt((difference(model, own, angles) ** 2).mean()) for own in (deviations, deviations / 2))
         ratios.append(whole / half)
-    inside = np.mean([3.5 < ratio < 4.5 for ratio in ratios])
-    assert inside >= 0.95, sorted(ratios)
+    share = np.mean([3.5 < ratio < 4.5 for ratio in ratios])
+    assert share >= 0.95, sorted(ratios)
+
+
+FLANKS = ("pitch_deviation", "profile_slope", "helix_slope")
+SINGLE_FLANKS = TOLERANCES + "".join(
+    f"  {gear} {kind}: {{kind: {kind}, of: {gear}, flanks: each, limits: {{iso_class: 6}}, {law}}}\n"
+    for gear in ("pinion", "wheel")
+    for kind, law in zip(
+        FLANKS, ("law: {kind: random_walk, fill: [0.7, 1]}", *2 * ("each: tooth, law: {kind: uniform}",)), strict=True
+    )
+)
+
+
+@pytest.mark.slow
+def test_so_do_the_usual_differences_with_deviations_of_single_flanks(tmp_path: Any) -> None:
+    """Medians over the builds of a pair, with slopes and pitches of every flank up to 2.4 um.
+
+    In a share of builds of the order of the backlash a line of contact has just begun or ended by one method alone:
+    their differences are of first order where teeth differ, their rms of order 1.5, and no median feels them.
+    Single flanks of pairs in rings are refused.
+    """
+    rng, ratios = np.random.default_rng(3), []
+    for _ in range(PAIRS):
+        model = random_model(rng, tmp_path, tolerances=SINGLE_FLANKS)
+        deviations, angles = random_builds(model, rng, kelvin=500.0, flanks=0.3)
+        whole, half = (np.median(np.abs(difference(model, own, angles))) for own in (deviations, deviations / 2))
+        ratios.append(whole / half)
+    share = np.mean([3.5 < ratio < 4.5 for ratio in ratios])
+    assert share >= 0.95, sorted(ratios)
 
 
 @ALL_KINDS
@@ -309,6 +364,32 @@ def test_entries_that_know_no_helix_refuse_it(section: str, entry: str, words: s
     (path := tmp_path / "added.yaml").write_text(added.replace(f"{section}:\n", f"{section}:\n  {entry}\n", 1))
     with pytest.raises(SceneError, match=re.escape(words)):
         model_of_scene(path)
+
+
+@pytest.mark.parametrize(
+    ("kind", "of", "limit"),
+    [
+        ({"z2": 40, "a": 121.4}, "138.5640646 mm", 40.0),  # m_n z is 120 mm, whose range has 30 um
+        ({"wheel": "internal_gear", "mate": "right", "z2": 93, "a": 109.0}, "322.1614502 mm", 52.0),  # 279 mm: 40 um
+    ],
+)
+def test_a_graded_run_out_of_teeth_is_that_of_the_reference_diameter(
+    kind: dict[str, Any], of: str, limit: float, tmp_path: Path
+) -> None:
+    """m_n z/cos(beta), of a ring too; F_r of grade 7 at m_n 3 by the table of ISO 1328-2:1997."""
+    own = {"z1": 30, "m": 3, "beta": 30, "b1": 30, "b2": 30, "x1": 0, "x2": 0, **kind}
+
+    def checked(stated: str) -> Model:
+        grade = f"distribution: {{iso_1328_2: F_r 7, module: 3 mm, of: {stated}, law: {{kind: uniform}}}}"
+        (path := tmp_path / "graded.yaml").write_text(
+            text(f"tolerances:\n  own: {{kind: tooth_run_out, of: wheel, {grade}}}\n", **own)
+        )
+        return model_of_scene(path)
+
+    with pytest.raises(SceneError, match=f"of: expected {of[:5]}.*, as 'wheel' has it"):
+        checked(f"{3 * own['z2']} mm")
+    (contributor,) = checked(of).contributors
+    assert 2e3 * contributor.distribution.high == pytest.approx(limit, abs=1e-9)  # teeth off by half of it
 
 
 class Unknown(MoveSpec):

@@ -11,7 +11,7 @@ from tol3d.errors import GeometryError, InputError
 from tol3d.files import Files
 from tol3d.gearing.draws.pitch_draw import tooth_names
 from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
-from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, HelicalGearSpec
+from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, helix_of
 from tol3d.gearing.grammar.tolerances.flank_shape import NormalShapeSpec, UniformShapeSpec
 from tol3d.gearing.grammar.tolerances.flank_tolerance import OF_CLASSES, FlankToleranceSpec, no_word
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, Nominal
@@ -56,7 +56,7 @@ class ToothRunOutSpec(TeethOffAxisSpec):
             words = f"{self.of!r}, a bevel gear, whose ISO 17485 is not in tol3d"
             yield Contradiction(path, "a cylindrical gear, or the limits themselves, as in 0/+30 um", words)
             return
-        beta = gear.helix_angle.internal if isinstance(gear, HelicalGearSpec) else 0.0
+        beta, _ = helix_of(gear)
         own = {"module": gear.module.internal, "of": gear.module.internal * gear.teeth / math.cos(beta)}
         for key, size in own.items():
             if not math.isclose(Quantity.parse(drawn[key]).internal, size, rel_tol=SAME_LENGTH):
