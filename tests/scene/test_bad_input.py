@@ -203,7 +203,7 @@ CHANGES = {
     ),
     "a kind like none": (
         ("kind: run_out", "kind: wobble"),
-        "tolerances.reducer run-out.kind: expected a kind of tolerance, got 'wobble'; tol3d schema lists all 54",
+        "tolerances.reducer run-out.kind: expected a kind of tolerance, got 'wobble'; tol3d schema lists all 55",
     ),
     "a length for a law": (
         ("distribution: {kind: rayleigh, scale: 4.5 um}", "distribution: 0.05 mm"),
