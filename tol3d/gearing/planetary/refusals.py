@@ -102,8 +102,10 @@ def _refuse_unlike(scene: Scene, name: str, central: SetGear, set_gear: SetGear)
     if (found := unlike(scene, central.name, set_gear.name)) is not None:
         words = "expected gears of the same {}, got {} and {}".format(*found)
         raise scene.refuse(("moves", name, "meshes", central.name), words)
-    if crossed := crossed_axes(*(cylindrical_gear(scene, gear.name) for gear in (central, set_gear))):
-        raise scene.refuse(("moves", name, "meshes", central.name), crossed)
+    if central.helix_angle or set_gear.helix_angle:
+        crossed = crossed_axes(*(cylindrical_gear(scene, gear.name) for gear in (central, set_gear)))
+        if crossed:
+            raise scene.refuse(("moves", name, "meshes", central.name), crossed)
 
 
 def _springs(scene: Scene, spec: PlanetarySpec) -> tuple[Spring, ...]:
