@@ -255,12 +255,13 @@ def thinner(columns: Columns, stage: Stage) -> Array:
 
 
 def to_first_order(columns: Columns, stage: Stage) -> Array:
-    """The normal backlash of a stage by the sum of effects (trials,)."""
+    """The normal backlash of a stage by the sum of effects (trials,); the nominal one grows with the driven gear."""
     off, slopes = apart(columns, stage, 0.0)
     stretched = off[:, 0] + APART * (
         IRON * columns["housing temperature [K]"] - STEEL * columns["gear temperature [K]"]
     )
-    tight = nominal(stage) + math.cos(ALPHA) * thinner(columns, stage)
+    grown = 1 + STEEL * columns["gear temperature [K]"]
+    tight = nominal(stage) * grown + math.cos(ALPHA) * thinner(columns, stage)
     return np.asarray(tight + stage.opening * stretched - lost(columns, stage, slopes))
 
 
