@@ -3,8 +3,11 @@ import { $, app, ask, trouble } from "./ask.js";
 import { watch } from "./jobs.js";
 import { editor } from "./text.js";
 
-async function fill() {
-  const found = await ask("forms", { kind: $("analysis").value || "effects" }), kept = $("analysis").value;
+let wished = 0;
+
+async function fill() { // the latest wish wins
+  const own = ++wished, found = await ask("forms", { kind: $("analysis").value || "effects" }), kept = $("analysis").value;
+  if (own !== wished) return;
   $("analysis").replaceChildren(...Object.entries(found.kinds).map(([kind, title]) => new Option(title, kind)));
   if (kept) $("analysis").value = kept;
   $("fields").innerHTML = found.form;
