@@ -99,6 +99,7 @@ def test_a_run_of_some_trials_an_analysis_and_their_end(app: App, tmp_path: Path
         assert page.ask(WIDER) == [], width
     app.click("close", "#found")
     app.click("analyses…")
+    page.wait("document.querySelector('#analyses').open")
     app.choose("#analysis", "sweep")
     app.page.wait("document.querySelectorAll('#numbers option').length > 20")
     assert page.ask(WIDER) == []
