@@ -35,7 +35,7 @@ from tol3d.errors import InputError
 from tol3d.files import FileContent
 
 SECONDS: Final = 60
-"""Of the clock, for each file; Open CASCADE may have WORKER_SECONDS of computing."""
+"""Longest time by the clock for each file; Open CASCADE may have WORKER_SECONDS of computing."""
 WORKER_SECONDS: Final = 10
 LONGEST: Final = 600  # characters of a message
 OUTSIDE: Final = ("/etc/hostname", "../secret.stp", "https://example.invalid/part.stp", "file:///etc/hostname")
@@ -197,7 +197,7 @@ def within(seconds: float) -> Iterator[None]:
 
 
 WATCHED: list[str] = []
-"""What was asked of a network, or opened by a name that a damaged file has; audit hooks stay as long as the process."""
+"""Requests to a network, and files opened by names in damaged files; audit hooks stay as long as the process."""
 
 
 def watch() -> None:

@@ -30,7 +30,7 @@ class Places:
     centres: Pairs = ((0.0, 0.0), (0.0, 0.0))
 
     def rotations(self) -> list[Array]:
-        """Of both axes, about their face centres."""
+        """Turns of both axes by their tilts, about their face centres."""
         vectors = ([-out, along, 0.0] for along, out in self.tilts)
         return [Rotation.from_rotvec(vector).as_matrix() for vector in vectors]
 

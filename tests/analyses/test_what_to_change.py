@@ -218,7 +218,7 @@ def test_a_mean_off_nominal_is_told_by_contributor() -> None:
 
 
 def test_the_mean_of_several_equal_components_moves_their_least_one_once() -> None:
-    """Of the least of three gaps, all 0.7 at the mean build, and half of another deviation."""
+    """A measure: the least of three gaps, all 0.7 at the mean build, and half of another deviation."""
     contributors = (
         PlainContributor("g", "x", Each(Normal(0.7, 0.2), ("1", "2", "3")), "um", 1.0),
         PlainContributor("x", "x", Scalar(Normal(1.0, 0.1)), "um", 1.0),

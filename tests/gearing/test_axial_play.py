@@ -295,7 +295,7 @@ DRAWN_PLAYS = "\n".join(
 
 
 def seated_turn(model: Model, trials: Trials, side: int) -> np.ndarray:
-    """Where the output rests on one side [rad], counted from the middle: rests of both meshes, the shafts as shifted.
+    """Rest of the output on one side [rad], counted from the middle: rests of both meshes, the shafts as shifted.
 
     Right flanks of A push B counter-clockwise, whose mate C then pushes with its left ones.
     """

@@ -250,7 +250,7 @@ def lost(columns: Columns, stage: Stage, slopes: Array) -> Array:
 
 
 def thinner(columns: Columns, stage: Stage) -> Array:
-    """Of both gears, in the normal section (trials,)."""
+    """Thinning of both gears together, in the normal section (trials,)."""
     return np.asarray(-sum(columns[f"{own.name} tooth thickness [um]"] for own in (stage.driver, stage.driven)) / 1000)
 
 

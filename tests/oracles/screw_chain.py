@@ -25,7 +25,7 @@ class Helical:
 
     @property
     def radius(self) -> float:
-        """Of the reference circle [mm]."""
+        """Radius of the reference circle [mm]."""
         return self.module * self.teeth / math.cos(self.helix) / 2
 
     @property

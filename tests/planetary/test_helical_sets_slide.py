@@ -41,7 +41,7 @@ class Toothed:
 
 
 def gears(hand: int, lead: int, *, stepped: bool) -> dict[str, Toothed]:
-    """Of a mesh, a set and a mesh behind it; the sun and the last pinion of these hands."""
+    """Gears of a mesh, a set and a mesh behind it; the sun and the last pinion of these hands."""
     beta, gamma = math.radians(20.0), math.radians(13.9 if stepped else 20.0)
     ring = (-78, 24, 1.55) if stepped else (-84, 30, 1.5)  # teeth, those of its planets' gears, module
     return {

@@ -15,7 +15,7 @@ CORNERS = ((-30.0, -14.0), (-30.0, 16.0), (34.0, -14.0), (34.0, 16.0))
 
 
 def machined(made: cq.Workplane, folder: Path, *, askew: bool = True) -> Machined:
-    """What is found on a solid, which stands askew and off its origin."""
+    """Features found on a solid, which stands askew and off its origin."""
     shape = solid(made)
     part = read_step(step_file({"part": turned(shape) if askew else shape}, folder / "part.step")).part(None)
     return part.machined

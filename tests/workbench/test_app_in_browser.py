@@ -281,7 +281,7 @@ def _opened(app: App, name: str) -> None:
 
 
 PLACE = "[...document.querySelectorAll('.names span')].find((own) => own.textContent.startsWith('{}')).place.toArray()"
-"""Of a feature in 3D, in mm."""
+"""Place of a feature in 3D, in mm."""
 
 
 def test_sliders_of_joints_move_an_arm_and_its_error_is_an_arrow_at_the_tool(app: App) -> None:

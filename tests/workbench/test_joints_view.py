@@ -38,7 +38,7 @@ def _row(simulation: Simulation) -> Row:
 
 
 def _tool_at(angles: tuple[float, ...]) -> np.ndarray:
-    """Where the tool is at inputs in degrees (3,) [mm]."""
+    """Place of the tool at inputs in degrees (3,) [mm]."""
     return tool_by_hand(AXES, TOOL, [math.radians(own) for own in angles])
 
 

@@ -1,4 +1,4 @@
-"""What a slider is moved to is in round numbers, which the card, the estimate and the kept line share."""
+"""Sliders land on round numbers, which the card, the estimate and the kept line share."""
 
 import math
 import shutil
