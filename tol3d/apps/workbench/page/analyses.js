@@ -50,7 +50,7 @@ function refuse({ argument, of, message }) {
 
 $("analyses-button").addEventListener("click", async () => {
   try {
-    await fill();
+    await Promise.all([fill(), watch("")]); // not at its "close": browsers tell that with a later frame, at times after the next start
     $("analyses").showModal();
   } catch (error) {
     trouble(error);
@@ -58,7 +58,6 @@ $("analyses-button").addEventListener("click", async () => {
 });
 $("analysis").addEventListener("change", () => fill().catch(trouble));
 $("close-analyses").addEventListener("click", () => $("analyses").close());
-$("analyses").addEventListener("close", () => watch(""));
 $("analysis-form").addEventListener("submit", async (event) => {
   event.preventDefault();
   for (const own of document.querySelectorAll("#fields .wrong")) own.remove();
