@@ -222,6 +222,11 @@ CHANGES = {
         ("{kind: rayleigh, scale", "{scale"),
         'tolerances.wheel eccentricity.distribution: expected the key "kind" here, found none',
     ),
+    "standard's word": (
+        ("{kind: rayleigh, scale: 4.5 um}", "{iso_1328: F_r 6}"),
+        'tolerances.pinion eccentricity.distribution: expected the key "kind" here, found none; did you mean '
+        '"iso_1328_2"?',
+    ),
     "unknown word": (
         ("working_flank: right", "working_flank: rihgt"),
         "moves.gear pair.working_flank: expected one of right, left, either, got 'rihgt'; did you mean \"right\"?",

@@ -20,6 +20,7 @@ from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.involute import inverse_involute, involute
 from tol3d.numerics.arrays import Array
 
+SAME_NOMINAL: Final = 0.005  # mm; a drawing rounds a size to one hundredth at the coarsest
 PIN_STEP = 0.05  # mm; diameters of proposed pins are multiples of it
 BISECTIONS = 60  # of an angle below a right one: to rounding
 REACH_SLACK = 1e-9  # mm; contact at the very end of a flank is allowed

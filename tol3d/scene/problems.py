@@ -13,6 +13,7 @@ from tol3d.scene.bases import ToleranceSpec
 from tol3d.scene.entry import Entry
 from tol3d.scene.nearest import LISTED_WORDS, LONGEST_WORD, hint, nearest
 from tol3d.scene.place import KeyPath, Origin, key_text
+from tol3d.statistics.distributions import drawn
 from tol3d.units import COMMA_SEPARATES, EXAMPLES, FACTORS, NUMBER_UNIT, Dimension, expectation, shown
 
 MOST_PROBLEMS = 8  # what a screen shows and a person mends in one go
@@ -167,7 +168,9 @@ def _missing(details: ErrorDetails) -> str:
 
 
 def _missing_kind(details: ErrorDetails) -> str:
-    return 'expected the key "kind" here, found none'
+    keys, is_law = details["input"], details["loc"][-1] in ("distribution", "law")
+    near = next(filter(None, (nearest(own, drawn.KEYS) for own in keys if isinstance(own, str))), "") if is_law else ""
+    return f'expected the key "kind" here, found none{near}'
 
 
 def _other_word(details: ErrorDetails, grammar: Words) -> str:

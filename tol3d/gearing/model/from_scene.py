@@ -37,7 +37,7 @@ from tol3d.gearing.model.trains import (
 from tol3d.gearing.shafts import Arm, Mesh, Train
 from tol3d.gears import LEFT, RIGHT, Gear, InternalGear, SpurGear
 from tol3d.gears.cylindrical_gear import CylindricalGear
-from tol3d.gears.tooth_measures import Span, ToothMeasure
+from tol3d.gears.tooth_measures import SAME_NOMINAL, Span, ToothMeasure
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, larger_end, warned
 from tol3d.scene.place import KeyPath
@@ -48,7 +48,6 @@ THICKNESS: Final = Implausible(0.1, "state the deviation of the thickness from n
 
 WHOLE_SIZE: Final = 0.5  # share of a nominal size from which a "deviation" is the size itself
 FOREIGN_SIZE: Final = 0.25  # pitches of the arc; no teeth are thinned by as much
-SAME_NOMINAL: Final = 0.005  # mm; a drawing rounds a size over pins to one hundredth at the coarsest
 
 
 def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:

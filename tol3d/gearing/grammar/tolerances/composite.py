@@ -18,6 +18,7 @@ from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, Nominal
 from tol3d.gearing.grammar.tolerances.gears import TeethOffAxisSpec
 from tol3d.gears import LEFT, RIGHT, Gear, SpurGear
 from tol3d.gears.pair import SAME_LENGTH
+from tol3d.gears.tooth_measures import SAME_NOMINAL
 from tol3d.scene.bases import Length, MoveSpec, PartSpec
 from tol3d.scene.entry import Contradiction
 from tol3d.scene.place import KeyPath
@@ -57,9 +58,10 @@ class ToothRunOutSpec(TeethOffAxisSpec):
             yield Contradiction(path, "a cylindrical gear, or the limits themselves, as in 0/+30 um", words)
             return
         beta, _ = helix_of(gear)
-        own = {"module": gear.module.internal, "of": gear.module.internal * gear.teeth / math.cos(beta)}
-        for key, size in own.items():
-            if not math.isclose(Quantity.parse(drawn[key]).internal, size, rel_tol=SAME_LENGTH):
+        module = gear.module.internal
+        own = {"module": (module, SAME_LENGTH * module), "of": (module * gear.teeth / math.cos(beta), SAME_NOMINAL)}
+        for key, (size, apart) in own.items():
+            if not math.isclose(Quantity.parse(drawn[key]).internal, size, rel_tol=0.0, abs_tol=apart):
                 yield Contradiction(("distribution", key), f"{size:g} mm, as {self.of!r} has it", repr(str(drawn[key])))
 
     @override
