@@ -269,6 +269,24 @@ def test_a_span_of_a_ring_above_its_nominal_makes_teeth_thinner(teeth: int | Non
     assert values == pytest.approx([own / (cos(radians(20.0)) * 156.0) for own in (0.05, 0.09)], rel=1e-4)
 
 
+@pytest.mark.parametrize("teeth", [8, None])
+def test_allowances_of_a_ring_below_0_are_those_above_0(teeth: int | None) -> None:
+    """Of its span and its size between balls: both make teeth thinner, the limits change places."""
+    ring = planetary(series=("", "", ""))
+    ring = ring.having(12, number_of_teeth_for_span_measurement=(teeth, "none")) if teeth else ring
+    ring = ring.having(12, diameter_of_measuring_ball_or_pin=(6.65, "mm"))
+    for what, unit in (("referenced_to_span", "mum"), ("balls_or_pins", "mm")):
+        laws = []
+        for lower, upper in ((0.05, 0.09), (-0.09, -0.05)):
+            scale = 1e3 if unit == "mum" else 1.0
+            own: dict[str, tuple[float, str]] = {
+                f"lower_backlash_allowance_{what}": (lower * scale, unit),
+                f"upper_backlash_allowance_{what}": (upper * scale, unit),
+            }
+            laws.append(scene_of(ring.having(12, **own))[1]["tolerances"]["ring tooth thickness"])
+        assert laws[0] == laws[1]
+
+
 def test_sizes_of_a_ring_are_between_balls() -> None:
     """Oracle: E_st = d (inv α_Kt - inv α_Kt') with cos α_Kt = d_b cos(π/2z)/(M_dK + D_M); j_t = -E_st turns 2 a."""
     ball, teeth = 6.65, 61
@@ -930,8 +948,8 @@ NAMED = {
             lower_backlash_allowance_referenced_to_span=(-90.0, "mum"),
             upper_backlash_allowance_referenced_to_span=(50.0, "mum"),
         ),
-        "ring_gear 12 'ring': …_backlash_allowance_referenced_to_span: not read of a ring with a limit below 0, whose "
-        "sign is not told",
+        "ring_gear 12 'ring': …_backlash_allowance_referenced_to_span: not read of a ring with limits to both sides of "
+        "0, whose sign is not told",
     ),
     "run-out": (
         pair().having(5, runout_tolerance=(20.0, "mum")),
