@@ -544,6 +544,45 @@ def test_axial_plays_that_are_filled_in_screw_the_train() -> None:
     assert a * 27 == pytest.approx(-b * 51)
 
 
+def test_axial_clearances_of_bearings_are_plays_of_helical_shafts() -> None:
+    """Of the one bearing that holds a shaft; of two the line to fill in says both, of a spur shaft nothing."""
+    writer = Writer()
+    first, second, third = (
+        writer.shaft(own, (0.0, 0.0, z)) for own, z in (("one", 0.0), ("two", -190.0), ("three", 0.0))
+    )
+    gears = [
+        writer.gear("a", first, 27, 4.5, 0.231415, helix=21.0, start=117.0),
+        writer.gear("b", second, 51, 4.5, 0.231415, helix=-21.0, start=72.0),
+        writer.gear("c", second, 20, 9.5, 0.0, start=180.0),
+        writer.gear("d", third, 20, 9.5, 0.0, start=180.0),
+    ]
+    writer.stage("fast", gears[0], gears[1], 190.0)
+    writer.stage("slow", gears[2], gears[3], 190.0)
+    limits: dict[str, Any] = {
+        f"{end}_axial_bearing_clearance": (value, "mum") for end, value in (("minimum", 20.0), ("maximum", 60.0))
+    }
+    rolling = "rolling_bearing_with_catalog_geometry"
+    writer.bearing("fixed", first, 0.0, rolling, **limits, axial_force_absorption=("both_directions", "none"))
+    writer.bearing("floating", first, 60.0, rolling, **limits, axial_force_absorption=("no_direction", "none"))
+    writer.bearing("left", second, 0.0, axial_clearance=(30.0, "mum"), axial_force_absorption=("positive", "none"))
+    writer.bearing(
+        "right",
+        second,
+        60.0,
+        rolling,
+        axial_clearance_class=("C3", "none"),
+        axial_force_absorption=("negative", "none"),
+    )
+    writer.bearing("of spur gears", third, 0.0, axial_clearance=(30.0, "mum"))
+    text, read = scene_of(writer.rexs())
+    plays = {name: own["distribution"] for name, own in read["tolerances"].items() if own["kind"] == "axial_play"}
+    assert plays == {"one axial play": ["20 um", "60 um"]}
+    assert "  # bearing fixed: minimum_… and maximum_axial_bearing_clearance\n" in text
+    assert "# to fill in: limits of the play between its stops, left 30 um, right class C3\n" in text
+    writer.bearing("thrust", first, 90.0, radial_force_absorption=(False, "none"), axial_clearance=(25.0, "mum"))
+    assert "fixed 20 um to 60 um, thrust 25 um\n" in gearbox_draft(writer.rexs().file()).scene()[0]
+
+
 def test_the_classes_of_single_helical_teeth_are_drafted() -> None:
     """Stated classes of one gear, and a pitch to fill in of the others; the train runs with all of them."""
     text, read = scene_of(two_stages().having(6, tolerance_class_according_to_iso_1328_2013=("6", "none")))
