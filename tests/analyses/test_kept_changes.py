@@ -383,6 +383,8 @@ def test_the_command_writes_the_scene(tol3d: Command, tmp_path: Path) -> None:
         ("{din_3967: c25, law: {kind: triangular}}", "{din_3967: 24 d}", "{din_3967: 24 d, law: {kind: triangular}}"),
         ("-40/-90 um", "{din_3967: cd25}", "{din_3967: cd25}"),
         ("{fit: js7, of: 60 mm}", "cd25", "{din_3967: cd25}"),
+        ("-40/-90 um", "{fit: h7, of: 60 mm}", "{fit: h7, of: 60 mm}"),
+        ("{fit: js7, of: 60 mm}", "{of: 10 mm, fit: h7}", "{fit: h7, of: 10 mm}"),
     ],
 )
 def test_a_class_is_kept_as_a_class_where_the_line_has_limits_of_a_drawing(
@@ -439,6 +441,13 @@ def test_a_class_of_a_size_that_a_part_or_move_states_is_kept_in_numbers_where_a
         InputError, match="for the scene states no nominal size at which a class could be read, got 'H7'"
     ):
         change_of(own, "t=H7")
+    at_60 = change_of(own, "t={fit: H8, of: 60 mm}")
+    assert at_60.limits == pytest.approx((0.0, 0.046), rel=1e-12)
+    kept = assert_kept("", at_60, scene, own)
+    assert kept.text == scene.text.replace("lower: -5 um, upper: 9 um", "lower: 0 um, upper: 46 um")
+    for value, got in (("60", "got '60'"), ("60 deg", "got 60 deg"), ("-60 mm", "got -60 mm")):
+        with pytest.raises(InputError, match=f"nominal size such as 60 mm in .fit: H8, of: {value}.*{got}"):
+            change_of(own, f"t={{fit: H8, of: {value}}}")
 
 
 @pytest.mark.parametrize(

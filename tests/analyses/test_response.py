@@ -264,6 +264,19 @@ def test_values_in_pieces_are_those_of_all_at_once_to_the_bit() -> None:
     assert np.array_equal(np.concatenate([each.codes for _, each in pieces]), expected.codes)
 
 
+@pytest.mark.parametrize("name", ["every_cycloid_field", "rv_bearing_play", "rv_train"])
+def test_a_build_of_a_reducer_has_the_same_bits_alone_and_among_others(name: str) -> None:
+    """Nothing of a build is summed, or padded, by how many there are."""
+    own = response(name, analytic=True)
+    deviations, positions = own.drawn(80)
+    expected = own.values(deviations, positions).values
+    for size in (1, 7):
+        for first in range(0, 80, size):
+            rows = slice(first, first + size)
+            values = own.values(deviations[rows], {key: places[rows] for key, places in positions.items()}).values
+            assert np.array_equal(values, expected[rows])
+
+
 @pytest.mark.parametrize(
     ("fixed", "each", "sizes"),
     [

@@ -269,6 +269,24 @@ def test_a_span_of_a_ring_above_its_nominal_makes_teeth_thinner(teeth: int | Non
     assert values == pytest.approx([own / (cos(radians(20.0)) * 156.0) for own in (0.05, 0.09)], rel=1e-4)
 
 
+@pytest.mark.parametrize("teeth", [8, None])
+def test_allowances_of_a_ring_below_0_are_those_above_0(teeth: int | None) -> None:
+    """Of its span and its size between balls: both make teeth thinner, the limits change places."""
+    ring = planetary(series=("", "", ""))
+    ring = ring.having(12, number_of_teeth_for_span_measurement=(teeth, "none")) if teeth else ring
+    ring = ring.having(12, diameter_of_measuring_ball_or_pin=(6.65, "mm"))
+    for what, unit in (("referenced_to_span", "mum"), ("balls_or_pins", "mm")):
+        laws = []
+        for lower, upper in ((0.05, 0.09), (-0.09, -0.05)):
+            scale = 1e3 if unit == "mum" else 1.0
+            own: dict[str, tuple[float, str]] = {
+                f"lower_backlash_allowance_{what}": (lower * scale, unit),
+                f"upper_backlash_allowance_{what}": (upper * scale, unit),
+            }
+            laws.append(scene_of(ring.having(12, **own))[1]["tolerances"]["ring tooth thickness"])
+        assert laws[0] == laws[1]
+
+
 def test_sizes_of_a_ring_are_between_balls() -> None:
     """Oracle: E_st = d (inv α_Kt - inv α_Kt') with cos α_Kt = d_b cos(π/2z)/(M_dK + D_M); j_t = -E_st turns 2 a."""
     ball, teeth = 6.65, 61
@@ -524,6 +542,45 @@ def test_axial_plays_that_are_filled_in_screw_the_train() -> None:
     a, b, c, d = (2.0 * sin(radians(beta)) / (z * module) for z, module, beta in teeth)
     assert form.mean == pytest.approx(0.025 * ((abs(b) + abs(b - c)) * 23 / 34 + d), rel=1e-4)
     assert a * 27 == pytest.approx(-b * 51)
+
+
+def test_axial_clearances_of_bearings_are_plays_of_helical_shafts() -> None:
+    """Of the one bearing that holds a shaft; of two the line to fill in says both, of a spur shaft nothing."""
+    writer = Writer()
+    first, second, third = (
+        writer.shaft(own, (0.0, 0.0, z)) for own, z in (("one", 0.0), ("two", -190.0), ("three", 0.0))
+    )
+    gears = [
+        writer.gear("a", first, 27, 4.5, 0.231415, helix=21.0, start=117.0),
+        writer.gear("b", second, 51, 4.5, 0.231415, helix=-21.0, start=72.0),
+        writer.gear("c", second, 20, 9.5, 0.0, start=180.0),
+        writer.gear("d", third, 20, 9.5, 0.0, start=180.0),
+    ]
+    writer.stage("fast", gears[0], gears[1], 190.0)
+    writer.stage("slow", gears[2], gears[3], 190.0)
+    limits: dict[str, Any] = {
+        f"{end}_axial_bearing_clearance": (value, "mum") for end, value in (("minimum", 20.0), ("maximum", 60.0))
+    }
+    rolling = "rolling_bearing_with_catalog_geometry"
+    writer.bearing("fixed", first, 0.0, rolling, **limits, axial_force_absorption=("both_directions", "none"))
+    writer.bearing("floating", first, 60.0, rolling, **limits, axial_force_absorption=("no_direction", "none"))
+    writer.bearing("left", second, 0.0, axial_clearance=(30.0, "mum"), axial_force_absorption=("positive", "none"))
+    writer.bearing(
+        "right",
+        second,
+        60.0,
+        rolling,
+        axial_clearance_class=("C3", "none"),
+        axial_force_absorption=("negative", "none"),
+    )
+    writer.bearing("of spur gears", third, 0.0, axial_clearance=(30.0, "mum"))
+    text, read = scene_of(writer.rexs())
+    plays = {name: own["distribution"] for name, own in read["tolerances"].items() if own["kind"] == "axial_play"}
+    assert plays == {"one axial play": ["20 um", "60 um"]}
+    assert "  # bearing fixed: minimum_… and maximum_axial_bearing_clearance\n" in text
+    assert "# to fill in: limits of the play between its stops, left 30 um, right class C3\n" in text
+    writer.bearing("thrust", first, 90.0, radial_force_absorption=(False, "none"), axial_clearance=(25.0, "mum"))
+    assert "fixed 20 um to 60 um, thrust 25 um\n" in gearbox_draft(writer.rexs().file()).scene()[0]
 
 
 def test_the_classes_of_single_helical_teeth_are_drafted() -> None:
@@ -930,8 +987,8 @@ NAMED = {
             lower_backlash_allowance_referenced_to_span=(-90.0, "mum"),
             upper_backlash_allowance_referenced_to_span=(50.0, "mum"),
         ),
-        "ring_gear 12 'ring': …_backlash_allowance_referenced_to_span: not read of a ring with a limit below 0, whose "
-        "sign is not told",
+        "ring_gear 12 'ring': …_backlash_allowance_referenced_to_span: not read of a ring with limits to both sides of "
+        "0, whose sign is not told",
     ),
     "run-out": (
         pair().having(5, runout_tolerance=(20.0, "mum")),

@@ -237,6 +237,12 @@ def test_a_class_of_a_drawing_is_a_value_of_a_field(tmp_path: Path) -> None:
         questions.card(asked({CENTRE: "js77"}))
     with pytest.raises(InputError, match="no nominal size at which a class could be read, got 'H7'"):
         questions.card(asked({"bearing clearance": "H7"}))
+    fit = "{fit: H7, of: 60 mm}"
+    now = {"bearing clearance": "{ of: 60 mm, fit: H7 }"}
+    assert questions.card(asked(now))["written"] == {"bearing clearance": fit}
+    shown = questions.sliders(asked(now))["sliders"]
+    assert f"{fit}: +30/0 µm" in shown
+    assert 'value="{fit: H6, of: 60 mm}"' in shown
     questions.close()
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from tol3d.analyses.response import Response
 from tol3d.analyses.stated_changes import Change, changed, known, law_of
-from tol3d.analyses.stated_classes import Sizes, class_size, sizes_of
+from tol3d.analyses.stated_classes import Sizes, class_size, sizes_of, with_own_size
 from tol3d.analyses.stated_limits import OtherLimits, limited
 from tol3d.errors import InputError
 from tol3d.files import Files
@@ -78,7 +78,7 @@ def scene_with(
 def _stated(spec: ToleranceEntry, change: Change, draw: Draw, sizes: Sizes, files: Files) -> ToleranceEntry:
     size = class_size(change.of_class, sizes)
     if change.of_class and size is not None and isinstance(spec, ToleranceSpec) and spec.distribution.between:
-        return spec.of_class(change.of_class, size)
+        return spec.of_class(with_own_size(change.of_class, sizes)[0], size)
     spec = spec.in_numbers(draw)
     if change.factor is not None:
         return spec.scaled(change.factor, change.stays or naturally_stays(draw), files)

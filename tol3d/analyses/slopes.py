@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.analyses.rates import covariance_of
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
 from tol3d.study.system.contributor import Contributor, WithNominal
@@ -121,7 +122,6 @@ def rates_of(response: Response, deviations: Array, positions: Mapping[str, Arra
     ).reshape(-1, len(response.measures))
     nominal, built = (_at(response, row, places, rows) for row in (zero, mean))
     second = _second(response, mean, built, places, rows)
-    by_contributor = np.array([second[:, own].sum(axis=1) for own in response.slices.values()]).reshape(first.shape)
     return Rates(
         response,
         slopes,
@@ -130,7 +130,7 @@ def rates_of(response: Response, deviations: Array, positions: Mapping[str, Arra
         nominal,
         built,
         first.T,
-        by_contributor.T,
+        second,
     )
 
 
@@ -213,25 +213,39 @@ def _moved_together(response: Response, own: slice, positions: Mapping[str, Arra
 
 
 def _second(response: Response, mean: Array, built: Array, positions: Mapping[str, Array], rows: int) -> Array:
-    """Half the curvature times the variance of each component (measures, components), over one sigma to both sides."""
-    sigmas = np.array(
-        [
-            component_sigma
-            for contributor in response.contributors
-            for component_sigma in component_sigmas(response.draws[contributor.name])
-        ]
-    )
-    acting = np.flatnonzero(sigmas > 0.0)
-    found = np.zeros((len(response.measures), response.components))
+    """Mean shift by each contributor's spread (measures, contributors), over one sigma to both sides.
+
+    Exact for quadratic measures. Several components of one contributor move together, in signs that balance in pairs:
+    each by itself counts the least of several as often as there are.
+    """
+    shifts = {name: _balanced(covariance_of(response.draws[name])) for name in response.slices}
+    whose = np.repeat(np.arange(len(shifts)), [len(own) for own in shifts.values()])
+    sides = np.zeros((len(whose), response.components))
+    for k, (name, own) in enumerate(response.slices.items()):
+        sides[whose == k, own] = shifts[name]
+    bends = np.zeros((len(sides), len(response.measures)))
     many = max(1, AT_ONCE // max(2 * rows * response.components, 1))
-    for first in range(0, len(acting), many):
-        columns = acting[first : first + many]
-        shifts = np.zeros((2 * len(columns), response.components))
-        shifts[np.arange(len(columns)), columns] = sigmas[columns]
-        shifts[len(columns) + np.arange(len(columns)), columns] = -sigmas[columns]
-        builds = np.repeat(mean + shifts, rows, axis=0)
-        places = {name: np.concatenate([own] * len(shifts)) for name, own in positions.items()}
-        values = response.values(builds, places).values.reshape(2, len(columns), rows, len(response.measures))
+    for first in range(0, len(sides), many):
+        side = sides[first : first + many]
+        builds = np.repeat(mean + np.concatenate([side, -side]), rows, axis=0)
+        places = {name: np.concatenate([own] * 2 * len(side)) for name, own in positions.items()}
+        values = response.values(builds, places).values.reshape(2, len(side), rows, len(response.measures))
         either = _mean(np.moveaxis(values, 2, 0))
-        found[:, columns] = ((either[0] + either[1] - 2 * built) / 2).T
-    return np.asarray(np.nan_to_num(found))
+        bends[first : first + many] = (either[0] + either[1] - 2 * built) / 2
+    found = [np.nan_to_num(bends[whose == k]).sum(axis=0) / max(len(own), 1) for k, own in enumerate(shifts.values())]
+    return np.array(found).reshape(-1, len(response.measures)).T
+
+
+def _balanced(covariance: Array) -> Array:
+    """Shifts (n, components) of a mean square of the covariance, n the next power of two; none where nothing spreads.
+
+    Their signs are rows of Sylvester's Hadamard matrix.
+    """
+    if not covariance.any():
+        return np.zeros((0, len(covariance)))
+    signs = np.ones((1, 1))
+    while len(signs) < len(covariance):
+        signs = np.block([[signs, signs], [signs, -signs]])
+    squares, axes = np.linalg.eigh(covariance)
+    root = axes * np.sqrt(np.maximum(squares, 0.0)) @ axes.T
+    return np.asarray(signs[:, : len(covariance)] @ root)

@@ -33,7 +33,7 @@ class Change:
         size: new size of its zone, or of a law stated by one number.
         factor: on its width.
         stays: which limit does, where it is scaled; default: see study/system/other_laws.py, `naturally_stays`.
-        of_class: the class that its limits are of, such as H7 or cd25; "" for none.
+        of_class: the class that its limits are of, such as H7, cd25 or {fit: H7, of: 60 mm}; "" for none.
     """
 
     name: str

@@ -22,6 +22,10 @@ SERIES: Final = "din_3967"
 LIMITS: Final[Mapping[str, Callable[[str, float], Limits]]] = {FIT: iso_286.limits, SERIES: din_3967.thickness}
 WORDS: Final[Mapping[str, Callable[[str], bool]]] = {SERIES: is_series, "din_3964": is_field}
 WRITTEN: Final = re.compile(rf"\{{\s*(?P<key>{'|'.join(WORDS)})\s*:\s*(?P<word>[^{{}}]*?)\s*\}}")
+FITTED: Final = re.compile(
+    r"\{(?=[^{}]*\bfit\s*:\s*(?P<word>[^{},]*?)\s*[,}])(?=[^{}]*\bof\s*:\s*(?P<size>[^{},]*?)\s*[,}])[^{},]*,[^{},]*\}"
+)
+"""A class of ISO 286 with its own nominal size."""
 
 
 def sizes_of(scene: Scene, lines: Iterable[Line]) -> Mapping[str, Sizes]:
@@ -53,18 +57,45 @@ def classes_of(scene: Scene, lines: Iterable[Line]) -> Mapping[str, str]:
 def class_of(text: str) -> str:
     """The class that a text names, right or wrong, also in the words of a scene; "" of other text.
 
-    >>> class_of("js7"), class_of("{din_3967: 25 cd}"), class_of("7 um")
-    ('js7', '25 cd', '')
+    One that states its nominal size keeps that.
+
+    >>> class_of("js7"), class_of("{din_3967: 25 cd}"), class_of("7 um"), class_of("{ of: 60 mm, fit: H7 }")
+    ('js7', '25 cd', '', '{fit: H7, of: 60 mm}')
     """
     text = text.strip()
+    if match := FITTED.fullmatch(text):
+        return _fitted(match["word"], match["size"])
     if match := WRITTEN.fullmatch(text):
         return match["word"] if WORDS[match["key"]](match["word"]) else text
     return text if is_series(text) or iso_286.CLASS.fullmatch(text) else ""
 
 
+def _fitted(word: str, size: str) -> str:
+    return f"{{fit: {word}, of: {size}}}"
+
+
+def with_own_size(tolerance_class: str, sizes: Sizes) -> tuple[str, Sizes]:
+    """The letters and number of a class, and nominal sizes: that which it states itself, else the scene's.
+
+    Raises:
+        InputError: it states no length.
+    """
+    match = FITTED.fullmatch(tolerance_class)
+    if match is None:
+        return tolerance_class, sizes
+    try:
+        size = Quantity.parse(match["size"])
+    except ValueError as error:
+        raise InputError(f"expected a nominal size such as 60 mm in {tolerance_class}; {error}") from None
+    if size.dimension != "length" or not size.internal > 0.0:
+        raise InputError(f"expected a nominal size such as 60 mm in {tolerance_class}, got {size}")
+    return match["word"], {FIT: size}
+
+
 def class_size(tolerance_class: str, sizes: Sizes) -> Quantity | None:
-    """The nominal size at which a class is read; None where the scene states none."""
-    return sizes.get(_standard(tolerance_class, sizes))
+    """The nominal size at which a class is read; None where neither it nor the scene states one."""
+    word, known = with_own_size(tolerance_class, sizes)
+    return known.get(_standard(word, known))
 
 
 def class_limits(tolerance_class: str, sizes: Sizes) -> tuple[float, float]:
@@ -84,13 +115,14 @@ def _standard(tolerance_class: str, sizes: Sizes) -> str:
 
 def _limits(tolerance_class: str, sizes: Sizes) -> Limits:
     """Lower and upper limit of a class [um]."""
+    tolerance_class, sizes = with_own_size(tolerance_class, sizes)
     standard = _standard(tolerance_class, sizes)
     if standard in sizes:
         return LIMITS[standard](tolerance_class, sizes[standard].internal)
     if standard == SERIES:
         raise InputError(f"expected a class of {STANDARDS[SERIES].of}, got {tolerance_class!r} of another tolerance")
-    words = "limits in numbers, for the scene states no nominal size at which a class could be read"
-    raise InputError(f"expected {words}, got {tolerance_class!r}")
+    words = f"limits in numbers or {_fitted(tolerance_class, '60 mm')}, for the scene states no nominal size"
+    raise InputError(f"expected {words} at which a class could be read, got {tolerance_class!r}")
 
 
 def class_words(tolerance_class: str, sizes: Sizes) -> str:
@@ -117,6 +149,8 @@ def neighbours(tolerance_class: str, sizes: Sizes) -> tuple[str, ...]:
     >>> neighbours("js7", {"fit": Quantity(60.2, "mm")}), neighbours("21 h", {"din_3967": Quantity(100.0, "mm")})
     (('js6', 'js7', 'js8'), ('h21', 'h22'))
     """
+    if fitted := FITTED.fullmatch(tolerance_class):
+        return tuple(_fitted(own, fitted["size"]) for own in neighbours(*with_own_size(tolerance_class, sizes)))
     match = iso_286.CLASS.fullmatch(tolerance_class)
     if is_series(tolerance_class):
         letters, grade = din_3967.series(tolerance_class)

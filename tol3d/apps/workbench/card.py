@@ -12,7 +12,7 @@ from tol3d.analyses.before_after import SIDES, limits_of
 from tol3d.analyses.limit_state import Side
 from tol3d.analyses.scope import Scope
 from tol3d.analyses.stated_changes import told
-from tol3d.analyses.stated_classes import class_of, class_words, neighbours
+from tol3d.analyses.stated_classes import class_of, class_size, class_words, neighbours
 from tol3d.analyses.stated_limits import FIELDS, NONE, changeable
 from tol3d.analyses.stated_sizes import sizes_of_law
 from tol3d.apps.workbench.session import LIMITS, Evaluated, Session
@@ -267,9 +267,9 @@ def _slider(session: Session, line: str, now: WhatIf, share: Share | None) -> Ma
     own_class, now_class = session.classes.get(line, ""), class_of(now.get(line, ""))
     stated = class_words(own_class, sizes) if own_class and sizes else told(contributor, draw)
     words = [tag("span", tag("span", "was ", class_="was"), f"{stated}{each}", class_="dim")]
-    if now_class and sizes:
+    if now_class and (sizes or class_size(now_class, sizes)):
         words.insert(0, tag("span", class_words(now_class, sizes), class_="class-words"))
-    offered = neighbours(now_class or own_class, sizes) if sizes else ()
+    offered = neighbours(now_class or own_class, sizes)
     scene_words, listed = (
         own_class or session.typed.get(line) or written(contributor, draw),
         "-".join(("classes", "of", *line.split())),

@@ -351,7 +351,8 @@ def in_class(spec: DistributionSpec, tolerance_class: str, size: Quantity) -> Di
     if is_series(tolerance_class):
         written = {"din_3967": tolerance_class, **law}
         return UnsizedSpec(standard="din_3967", word=tolerance_class, law=between, written=written).of(size.internal)
-    fit = {"fit": tolerance_class, "of": drawn.get("of", str(size))}
+    own = Quantity.parse(drawn["of"]) if "of" in drawn else None
+    fit = {"fit": tolerance_class, "of": drawn["of"] if own == size else str(size)}
     written = {"din_3964": tolerance_class} if "din_3964" in drawn and is_field(tolerance_class) else fit
     written |= law
     return between.between(*_limits(FitSpec.model_validate(fit))).as_drawn(written, between)

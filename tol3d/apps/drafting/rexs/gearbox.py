@@ -289,6 +289,25 @@ class Bearing:
 
 
 @dataclass(frozen=True)
+class Stop:
+    """A bearing between a shaft and the casing that holds the shaft along its axis, or may.
+
+    Args:
+        name: in the file.
+        shaft: component that it holds.
+        both: True if to both sides; None if the file does not say it.
+        play: lower and upper limit of its axial clearance [mm]; None for none.
+        source: the file's words of it, or the class that it states instead.
+    """
+
+    name: str
+    shaft: int
+    both: bool | None
+    play: tuple[float, float] | None
+    source: str
+
+
+@dataclass(frozen=True)
 class PlanetarySet:
     """A planetary stage.
 
@@ -324,6 +343,7 @@ class Gearbox:
         sets: planetary stages.
         shafts: those that carry gears, or a carrier.
         bearings: between these and the casing.
+        stops: bearings that hold shafts along their axes.
         left_out: lines on what the file has besides.
     """
 
@@ -331,11 +351,16 @@ class Gearbox:
     sets: Sequence[PlanetarySet]
     shafts: Sequence[Shaft]
     bearings: Sequence[Bearing]
+    stops: Sequence[Stop]
     left_out: Sequence[str]
 
     def shaft_of(self, gear: Gear) -> Shaft | None:
         """The shaft that carries a gear; None for a gear that is its own."""
         return next((own for own in self.shafts if any(each.id == gear.id for each in own.gears)), None)
+
+    def stops_of(self, shaft: Shaft) -> list[Stop]:
+        """Bearings that hold a shaft along its axis, or may."""
+        return [own for own in self.stops if own.shaft in shaft.ids]
 
     @property
     def single_teeth(self) -> list[Gear]:

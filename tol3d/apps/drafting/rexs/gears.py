@@ -122,36 +122,42 @@ def _allowances(gear: Component, left: LeftOut) -> Iterator[Allowance]:
         limits_of, gear, "lower_backlash_allowance_referenced_to_span", "upper_backlash_allowance_referenced_to_span"
     )
     of_ring, source = gear.type == "ring_gear", "…_backlash_allowance_referenced_to_span"
-    if span is not None and _sign_is_told(gear, span, source, left):
+    if span is not None and (told := _of_size(gear, span, source, left)):
+        limits, source = told
         teeth = left.spared(gear.whole, "number_of_teeth_for_span_measurement")
         if teeth is not None:
-            yield Allowance(f"{{span: {teeth}}}", *span, source)
+            yield Allowance(f"{{span: {teeth}}}", *limits, source)
         else:
-            yield Allowance("normal", *((-span[1], -span[0]) if of_ring else span), source)
+            yield Allowance("normal", *((-limits[1], -limits[0]) if of_ring else limits), source)
     pins = left.spared(
         limits_of, gear, "lower_backlash_allowance_balls_or_pins", "upper_backlash_allowance_balls_or_pins"
     )
     source = "…_backlash_allowance_balls_or_pins"
-    if pins is not None and _sign_is_told(gear, pins, source, left):
+    if pins is not None and (told := _of_size(gear, pins, source, left)):
+        limits, source = told
         diameter = left.spared(gear.number, "diameter_of_measuring_ball_or_pin", "length")
         if diameter is None:
             left.lines.append(f"{gear}: {source}: not read without diameter_of_measuring_ball_or_pin")
         else:
             # no straight pin fits between the flanks of a helical ring
             over = "balls" if of_ring else "pins"
-            yield Allowance(f"{{{over}: {length(diameter)}}}", *pins, source)
+            yield Allowance(f"{{{over}: {length(diameter)}}}", *limits, source)
 
 
-def _sign_is_told(gear: Component, limits: tuple[float, float], source: str, left: LeftOut) -> bool:
-    """True of limits that say which way they count; of a ring those above 0, by which its teeth are thinner.
+def _of_size(
+    gear: Component, limits: tuple[float, float], source: str, left: LeftOut
+) -> tuple[tuple[float, float], str] | None:
+    """Limits of a measured size, with their source in words; None of a ring's to both sides of 0.
 
-    Its span over spaces and its size between pins grow as its teeth get thinner, which allowances for backlash make
-    them. Limits below 0 may count diameters of rings as negative, or the thickness.
+    A ring's span over spaces and its size between pins grow as its teeth get thinner, which allowances for backlash
+    make them. Files state that growth, or count it below 0, as DIN 3967 does thinner teeth.
     """
     if gear.type != "ring_gear" or limits[0] >= 0.0:
-        return True
-    left.lines.append(f"{gear}: {source}: not read of a ring with a limit below 0, whose sign is not told")
-    return False
+        return limits, source
+    if limits[1] <= 0.0:
+        return (-limits[1], -limits[0]), f"{source}, below 0 for thinner teeth"
+    left.lines.append(f"{gear}: {source}: not read of a ring with limits to both sides of 0, whose sign is not told")
+    return None
 
 
 def limits_of(component: Component, lower: str, upper: str) -> tuple[float, float] | None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tol3d.apps.drafting.entry import Entry, Wording
-from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, PlanetarySet, Shaft, Stage
+from tol3d.apps.drafting.rexs.gearbox import Bearing, Gear, Gearbox, PlanetarySet, Shaft, Stage, Stop
 from tol3d.apps.drafting.rexs.named import Named
 from tol3d.apps.drafting.words import comment, length, number, scalar
 
@@ -58,7 +58,7 @@ def tolerances(gearbox: Gearbox, names: Named, bearings: Sequence[Bearing]) -> I
         yield _clearance(bearing, names)
     for shaft in names.shafts:
         if any(gear.helical for gear in shaft.gears):
-            yield _axial_play(shaft, names)
+            yield _axial_play(shaft, names, gearbox.stops_of(shaft))
 
 
 def _entry(name: str, words: Sequence[Wording], label: str, blank: bool = False) -> Entry:
@@ -146,10 +146,28 @@ def _clearance(bearing: Bearing, names: Named) -> Entry:
     return _entry(title, [Wording((line,), comment(f"bearing {bearing.id}: {bearing.source}"))], label)
 
 
-def _axial_play(shaft: Shaft, names: Named) -> Entry:
-    """Play of a shaft along its axis, through which the thrust of its helical gears moves it at each reversal."""
+def _axial_play(shaft: Shaft, names: Named, stops: Sequence[Stop]) -> Entry:
+    """Play of a shaft along its axis, through which the thrust of its helical gears moves it at each reversal.
+
+    That of the one bearing that holds it; where several do, their clearances are said beside a line to fill in.
+    """
     of = names.of(shaft.ids[0])
-    title = names.titles.new(f"{of} axial play", "axial play")
-    line = f"{{kind: axial_play, of: {scalar(of)}, distribution: {{kind: uniform, lower: 0 um, upper: 50 um}}}}"
-    told = f"{ASKED}limits of the play between its stops"
-    return _entry(title, [Wording((line,), told)], f"shaft {shaft.ids[0]}: axial play", blank=True)
+    title, label = names.titles.new(f"{of} axial play", "axial play"), f"shaft {shaft.ids[0]}: axial play"
+    start = f"{{kind: axial_play, of: {scalar(of)}, distribution: "
+    stop = stops[0] if len(stops) == 1 and stops[0].both is not False else None
+    if stop is not None and (play := stop.play) is not None:
+        told = comment(f"bearing {stop.name}: {stop.source}")
+        return _entry(title, [Wording((f"{start}{deviations(*play)}}}",), told)], label)
+    said = "".join(f", {own.name} {_words(own)}" for own in stops if own.play is not None or own.source)
+    line = f"{start}{{kind: uniform, lower: 0 um, upper: 50 um}}}}"
+    return _entry(
+        title, [Wording((line,), f"{ASKED}limits of the play between its stops{comment(said)}")], label, blank=True
+    )
+
+
+def _words(stop: Stop) -> str:
+    """A bearing's axial clearance in words."""
+    if stop.play is None:
+        return stop.source
+    low, high = stop.play
+    return um(low) if low == high else f"{um(low)} to {um(high)}"

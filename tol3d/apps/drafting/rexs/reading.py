@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Final
 
 from tol3d.apps.drafting.rexs.document import Component, Document, LeftOut, Relation, RexsError
-from tol3d.apps.drafting.rexs.gearbox import MOST_NAMED, Bearing, Gear, Gearbox, Stage, counted
+from tol3d.apps.drafting.rexs.gearbox import MOST_NAMED, Bearing, Gear, Gearbox, Stage, Stop, counted
 from tol3d.apps.drafting.rexs.gears import gear_of, limits_of, require_mates
 from tol3d.apps.drafting.rexs.places import HOUSINGS, shafts_of
 from tol3d.apps.drafting.rexs.planetary import planetary_set
@@ -32,11 +32,14 @@ NO_PLAY: Final = (
 )  # fmt: skip
 """Words in types of components that say nothing of play, or whose stage is named instead."""
 CLEARANCES: Final = (
-    "operating_radial_bearing_clearance",
-    "mounted_radial_bearing_clearance",
-    "radial_bearing_clearance",
-    "radial_clearance",
+    "operating_{}_bearing_clearance",
+    "mounted_{}_bearing_clearance",
+    "{}_bearing_clearance",
+    "{}_clearance",
 )
+"""Names of single values, with `radial` or `axial`, that which is nearest to the mounted gearbox first."""
+HOLDS: Final = {"both_directions": True, "positive": False, "negative": False}
+"""Axial forces that a bearing takes, and whether these are all."""
 MOST_STAGES: Final = 200  # of one scene that a person reads
 GRADES: Final = range(5, 12)  # of DIN 3964
 DIGITS_OF_SHIFT: Final = 6  # as gear programs print x
@@ -74,7 +77,8 @@ def gearbox_of(document: Document) -> Gearbox:
         for own in document.all_of("planetary_stage")
     ]
     bearings = list(_bearings(document, left))
-    return Gearbox([own for own in stages if own.id not in in_set], sets, shafts, bearings, left.lines)
+    stops = list(_stops(document, left))
+    return Gearbox([own for own in stages if own.id not in in_set], sets, shafts, bearings, stops, left.lines)
 
 
 def _stages(document: Document) -> list[Relation]:
@@ -198,33 +202,54 @@ def _bearings(document: Document, left: LeftOut) -> Iterator[Bearing]:
         bearing = document.components[relation.one("assembly")]
         if bearing.type not in BEARINGS or bearing.flag("radial_force_absorption") is False:
             continue
-        inner, outer = document.components[relation.one("inner_part")], document.components[relation.one("outer_part")]
-        shafts = [(own, side) for own, side in ((inner, "inner"), (outer, "outer")) if own.type == "shaft"]
-        if len(shafts) != 1 or not {inner.type, outer.type} & {*HOUSINGS}:
+        if (held := _in_casing(document, relation)) is None:
             between.append(shown(bearing.name or str(bearing.id)))
             continue
-        shaft, side = shafts[0]
+        shaft, side = held
         at = left.spared(bearing.number, f"u_coordinate_on_shaft_{side}_side", "length")
-        clearance, source = left.spared(_clearance, bearing) or (None, "")
+        clearance, source = left.spared(_clearance, bearing, "radial") or (None, "")
         yield Bearing(bearing.id, bearing.name, shaft.id, at, clearance, source)
     if between:
         left.lines.append(f"{counted(between)} between parts that turn: not drafted")
 
 
-def _clearance(bearing: Component) -> tuple[tuple[float, float] | None, str]:
-    """Limits of the radial clearance [mm] with the file's words, or None with the class that it states instead.
+def _stops(document: Document, left: LeftOut) -> Iterator[Stop]:
+    """Bearings between a shaft and the casing that take axial forces, or state an axial clearance and no forces."""
+    for relation in document.of_type.get("side", ()):
+        bearing = document.components[relation.one("assembly")]
+        if bearing.type not in BEARINGS or (held := _in_casing(document, relation)) is None:
+            continue
+        forces = left.spared(bearing.text, "axial_force_absorption")
+        play, source = left.spared(_clearance, bearing, "axial") or (None, "")
+        if forces in HOLDS or (forces is None and (play or source)):
+            yield Stop(bearing.name or str(bearing.id), held[0].id, HOLDS.get(forces or ""), play, source)
+
+
+def _in_casing(document: Document, relation: Relation) -> tuple[Component, str] | None:
+    """The shaft that a bearing carries in the casing, and its side of the bearing; None of other bearings."""
+    inner, outer = document.components[relation.one("inner_part")], document.components[relation.one("outer_part")]
+    shafts = [(own, side) for own, side in ((inner, "inner"), (outer, "outer")) if own.type == "shaft"]
+    return shafts[0] if len(shafts) == 1 and {inner.type, outer.type} & {*HOUSINGS} else None
+
+
+def _clearance(bearing: Component, way: str) -> tuple[tuple[float, float] | None, str]:
+    """Limits of a clearance [mm] with the file's words, or None with the class that it states instead.
+
+    Args:
+        bearing: that has it.
+        way: `radial` or `axial`.
 
     Raises:
         RexsError: it is below 0.
     """
-    limits = limits_of(bearing, "minimum_radial_bearing_clearance", "maximum_radial_bearing_clearance")
-    found, source = limits, "minimum_… and maximum_radial_bearing_clearance"
-    for name in CLEARANCES:
+    limits = limits_of(bearing, f"minimum_{way}_bearing_clearance", f"maximum_{way}_bearing_clearance")
+    found, source = limits, f"minimum_… and maximum_{way}_bearing_clearance"
+    for name in (own.format(way) for own in CLEARANCES):
         value = None if found is not None else bearing.number(name, "length")
         if value is not None:
             found, source = (value, value), name
     if found is None:
-        group = bearing.text("radial_clearance_class")
+        group = bearing.text(f"{way}_clearance_class")
         return None, "" if group is None else f"class {group}"
     if not 0.0 <= found[0] < math.inf:
         raise RexsError(f"{bearing}: {source}: expected a clearance above 0, got {found[0]:g} mm, a preload")

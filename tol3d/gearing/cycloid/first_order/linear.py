@@ -97,9 +97,9 @@ class LinearStage(CycloidStage):
             tangential = 1j * self.profile.eccentricity * np.exp(1j * throw)
             throws = as_complex(deviated.crank_errors[:, :, disc]) + tangential * deviated.crank_phases
             offsets = as_complex(deviated.carrier_offsets) + as_complex(deviated.disc_offsets[:, disc])
-            carried, rocked = holes.mean(axis=1) + offsets, throws @ across
+            carried, rocked = holes.mean(axis=1) + offsets, (throws * across).sum(axis=1)
             moved = np.hstack([as_points(carried), as_points(throws.mean(axis=1))])
-            found.append(np.column_stack([moved, (holes @ across).imag, as_points(rocked)]))
+            found.append(np.column_stack([moved, (holes * across).sum(axis=1).imag, as_points(rocked)]))
         return np.stack(found, axis=1)
 
     def rates(self, phis: Array, places: Places) -> Deviated:

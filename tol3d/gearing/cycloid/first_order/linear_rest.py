@@ -90,14 +90,14 @@ class LinearRest(LinearStage):
     def _pins(self, deviated: Deviated, phis: Array, sense: Sense, aside: Array | None) -> tuple[Array, Array, Places]:
         """Rows and gaps of the pins that work, and their places: disc times pins + pin (trials, rows).
 
-        Trials have as many rows as the one with most working pins; those that work nowhere are far off.
+        All trials have as many rows as can work at any crank angle; pins that do not work are far off.
         """
         profile = self.profile
         found = [self.nominal_gaps(deviated, disc, phis, aside) for disc in range(self.discs)]
         gaps, levers = (np.concatenate([own[k] for own in found], axis=1) for k in (0, 1))
         normals = np.concatenate([own[2] for own in found], axis=1) * np.exp(1j * phis / profile.lobes)[:, None]
         works = sense * levers > self.window * profile.pitch_radius
-        places = np.argsort(~works, axis=1, kind="stable")[:, : int(works.sum(axis=1).max())]
+        places = np.argsort(~works, axis=1, kind="stable")[:, : self._most_working(sense)]
         rows, trial = np.zeros((*places.shape, self._unknowns)), np.arange(len(phis))[:, None]
         at, number = 1 + 3 * (places // profile.pins), np.arange(places.shape[1])
         normal, lever = np.take_along_axis(normals, places, axis=1), np.take_along_axis(levers, places, axis=1)
@@ -106,6 +106,12 @@ class LinearRest(LinearStage):
         idle = ~np.take_along_axis(works, places, axis=1)
         rows[idle] = 0.0
         return rows, np.where(idle, FAR, np.take_along_axis(gaps, places, axis=1)), places
+
+    def _most_working(self, sense: Sense) -> int:
+        """Pins that work at once, of all discs, at most: evenly spread phases lie in an arc as often or once more."""
+        levers = [-self.profile.lever(self._parameters(np.array([throw]))) for throw in self.throws]
+        counts = (int(np.count_nonzero(sense * own > self.window * self.profile.pitch_radius)) for own in levers)
+        return sum(min(count + 1, self.profile.pins) for count in counts)
 
     def _bearings(self, deviated: Deviated, phis: Array) -> tuple[Complex, Complex]:
         """Displacements in bearings, in the carrier's frame: slopes (trials, bearings, unknowns), and where y = 0."""
