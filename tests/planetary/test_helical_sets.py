@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helical_places import least_placed_lag
 from numpy.typing import NDArray
-from oracles.screw_flanks import Placed, ScrewGear, lag
 from planetary_sets import free_by_highs, pitch_rows, random_deviations, reducer_3k
 
 from tol3d import load_scene, run_scene
@@ -25,7 +25,6 @@ from tol3d.gearing.planetary.model.set_mesh import SetGear
 from tol3d.gearing.planetary.sections import mesh_efficiencies
 from tol3d.gearing.planetary.system import PlanetarySystem
 from tol3d.gearing.planetary.witness import StripGaps
-from tol3d.gears import InternalGear, SpurGear
 
 Array = NDArray[np.float64]
 
@@ -194,15 +193,6 @@ def test_a_mesh_loses_more_by_the_lean_of_its_normals() -> None:
         assert 1 - own_efficiency == pytest.approx((1 - expected[name]) / math.cos(lean), rel=1e-12)
 
 
-def screw_of(gear: SpurGear | InternalGear, flank_turn: float) -> ScrewGear:
-    """The oracle's gear with the thickness of a trial."""
-    thinner = -2 * flank_turn * gear.module * gear.teeth / 2 - gear.tooth_thickness_deviation
-    return ScrewGear(
-        gear.teeth, gear.module, gear.pressure_angle, gear.helix_angle, gear.hand, gear.face_width, gear.profile_shift,
-        thinner, gear.addendum, isinstance(gear, InternalGear),
-    )  # fmt: skip
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("end", [0, 1])
 def test_seated_sets_touch_and_overlap_nowhere_by_a_search_of_their_screw_flanks(
@@ -221,34 +211,9 @@ def test_seated_sets_touch_and_overlap_nowhere_by_a_search_of_their_screw_flanks
         for place in range(len(own.meshes)):
             driven = gears[place]
             for side in (1, -1):
-                apart.append(_least_lag(driver, driven, side))
+                apart.append(least_placed_lag(driver, driven, side))
     assert min(apart) > -1e-6
     assert sum(abs(each) < 1e-6 for each in apart) >= own.planets + 1  # each planet stops, and the carrier by one
-
-
-def _least_lag(driver: Any, driven: Any, side: int) -> float:
-    """Least arc [mm] by which the flanks of a planet and a central gear are apart, of the teeth about the mesh."""
-    first, second = (screw_of(gear.gear, gear.flank_turn) for gear in (driver, driven))
-    placed = [
-        Placed(screw, np.array(gear.world_from_gear[:3, :3]), np.array(gear.world_from_gear[:3, 3]))
-        for screw, gear in ((first, driver), (second, driven))
-    ]
-    x, y = driver.world_from_gear[:2, 3] - driven.world_from_gear[:2, 3]
-    towards = math.atan2(y, x)
-    at_planet = towards if second.inside else towards + math.pi
-    turned = [math.atan2(gear.world_from_gear[1, 0], gear.world_from_gear[0, 0]) for gear in (driver, driven)]
-    tooth = round((at_planet - turned[0]) / driver.gear.angular_pitch)
-    mate = round((towards - turned[1]) / driven.gear.angular_pitch)
-    near = range(-2, 3)
-    return min(
-        (
-            abs(found) and found
-            for own in near
-            for its in near
-            if abs(found := lag(placed[0], placed[1], (0.0, 0.0), side, (tooth + own, mate + its))) < 1.0
-        ),
-        default=math.inf,
-    )
 
 
 @pytest.mark.slow
