@@ -13,7 +13,8 @@ from tol3d.gearing.engines import MeshReading
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.model.model import GearPart
-from tol3d.gears import Flank, InternalPair, SpurPair
+from tol3d.gearing.shown.placed import PlacedGear
+from tol3d.gears import Flank, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.numerics.arrays import Array
 
 BOTH = frozenset(("driver", "driven"))
@@ -102,3 +103,39 @@ def mirrored(places: Places, pitch: float) -> Places:
     (first, at), (second, other) = places.centres
     centres = ((first, -at), (second, -other - pitch))
     return Places(shifts, tilts, centres)
+
+
+def screw_of(gear: SpurGear | InternalGear, flank_turn: float) -> ScrewGear:
+    """The oracle's gear with the thickness of a trial."""
+    thinner = -2 * flank_turn * gear.module * gear.teeth / 2 - gear.tooth_thickness_deviation
+    return ScrewGear(
+        gear.teeth, gear.module, gear.pressure_angle, gear.helix_angle, gear.hand, gear.face_width, gear.profile_shift,
+        thinner, gear.addendum, isinstance(gear, InternalGear),
+    )  # fmt: skip
+
+
+def least_placed_lag(driver: PlacedGear, driven: PlacedGear, side: int) -> float:
+    """Least arc [mm] by which the flanks of a planet and a central gear are apart, of the teeth about the mesh."""
+    assert isinstance(driver.gear, SpurGear)
+    assert isinstance(driven.gear, SpurGear | InternalGear)
+    first, second = screw_of(driver.gear, driver.flank_turn), screw_of(driven.gear, driven.flank_turn)
+    placed = [
+        Placed(screw, np.array(gear.world_from_gear[:3, :3]), np.array(gear.world_from_gear[:3, 3]))
+        for screw, gear in ((first, driver), (second, driven))
+    ]
+    x, y = driver.world_from_gear[:2, 3] - driven.world_from_gear[:2, 3]
+    towards = math.atan2(y, x)
+    at_planet = towards if second.inside else towards + math.pi
+    turned = [math.atan2(gear.world_from_gear[1, 0], gear.world_from_gear[0, 0]) for gear in (driver, driven)]
+    tooth = round((at_planet - turned[0]) / driver.gear.angular_pitch)
+    mate = round((towards - turned[1]) / driven.gear.angular_pitch)
+    near = range(-2, 3)
+    return min(
+        (
+            abs(found) and found
+            for own in near
+            for its in near
+            if abs(found := lag(placed[0], placed[1], (0.0, 0.0), side, (tooth + own, mate + its))) < 1.0
+        ),
+        default=math.inf,
+    )

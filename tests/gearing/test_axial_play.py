@@ -500,9 +500,9 @@ def test_a_second_axial_play_of_a_shaft_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("of", "words"),
     [
-        ("nowhere", "a shaft, of a gear that none carries, or of a bearing"),
+        ("nowhere", "a shaft, of a gear that none carries, of a planet or of a bearing"),
         ("A", "which 'one' carries"),
-        ("first", "a shaft, of a gear that none carries, or of a bearing"),
+        ("first", "a shaft, of a gear that none carries, of a planet or of a bearing"),
         ("bare", "expected a shaft with a gear on it, or a bearing of one, got 'bare'"),
     ],
 )

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helical_places import least_placed_lag
 from numpy.typing import NDArray
-from oracles.screw_flanks import Placed, ScrewGear, lag
 from planetary_sets import free_by_highs, pitch_rows, random_deviations, reducer_3k
+from printing import printed, row_of
 
 from tol3d import load_scene, run_scene
 from tol3d.cad.solids import measuring_strips
@@ -22,10 +23,11 @@ from tol3d.gearing.planetary.from_scene import planetary_system
 from tol3d.gearing.planetary.model.deviated import Deviated
 from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
 from tol3d.gearing.planetary.model.set_mesh import SetGear
+from tol3d.gearing.planetary.presenting.tables import blocks
 from tol3d.gearing.planetary.sections import mesh_efficiencies
 from tol3d.gearing.planetary.system import PlanetarySystem
 from tol3d.gearing.planetary.witness import StripGaps
-from tol3d.gears import InternalGear, SpurGear
+from tol3d.report.page import page
 
 Array = NDArray[np.float64]
 
@@ -194,15 +196,6 @@ def test_a_mesh_loses_more_by_the_lean_of_its_normals() -> None:
         assert 1 - own_efficiency == pytest.approx((1 - expected[name]) / math.cos(lean), rel=1e-12)
 
 
-def screw_of(gear: SpurGear | InternalGear, flank_turn: float) -> ScrewGear:
-    """The oracle's gear with the thickness of a trial."""
-    thinner = -2 * flank_turn * gear.module * gear.teeth / 2 - gear.tooth_thickness_deviation
-    return ScrewGear(
-        gear.teeth, gear.module, gear.pressure_angle, gear.helix_angle, gear.hand, gear.face_width, gear.profile_shift,
-        thinner, gear.addendum, isinstance(gear, InternalGear),
-    )  # fmt: skip
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("end", [0, 1])
 def test_seated_sets_touch_and_overlap_nowhere_by_a_search_of_their_screw_flanks(
@@ -221,34 +214,9 @@ def test_seated_sets_touch_and_overlap_nowhere_by_a_search_of_their_screw_flanks
         for place in range(len(own.meshes)):
             driven = gears[place]
             for side in (1, -1):
-                apart.append(_least_lag(driver, driven, side))
+                apart.append(least_placed_lag(driver, driven, side))
     assert min(apart) > -1e-6
     assert sum(abs(each) < 1e-6 for each in apart) >= own.planets + 1  # each planet stops, and the carrier by one
-
-
-def _least_lag(driver: Any, driven: Any, side: int) -> float:
-    """Least arc [mm] by which the flanks of a planet and a central gear are apart, of the teeth about the mesh."""
-    first, second = (screw_of(gear.gear, gear.flank_turn) for gear in (driver, driven))
-    placed = [
-        Placed(screw, np.array(gear.world_from_gear[:3, :3]), np.array(gear.world_from_gear[:3, 3]))
-        for screw, gear in ((first, driver), (second, driven))
-    ]
-    x, y = driver.world_from_gear[:2, 3] - driven.world_from_gear[:2, 3]
-    towards = math.atan2(y, x)
-    at_planet = towards if second.inside else towards + math.pi
-    turned = [math.atan2(gear.world_from_gear[1, 0], gear.world_from_gear[0, 0]) for gear in (driver, driven)]
-    tooth = round((at_planet - turned[0]) / driver.gear.angular_pitch)
-    mate = round((towards - turned[1]) / driven.gear.angular_pitch)
-    near = range(-2, 3)
-    return min(
-        (
-            abs(found) and found
-            for own in near
-            for its in near
-            if abs(found := lag(placed[0], placed[1], (0.0, 0.0), side, (tooth + own, mate + its))) < 1.0
-        ),
-        default=math.inf,
-    )
 
 
 @pytest.mark.slow
@@ -293,3 +261,26 @@ def test_gears_that_do_not_mesh_are_refused(changed: dict[str, Any], words: str,
 
 def test_the_distance_of_the_pins_follows_from_the_circles_of_the_transverse_section(system: PlanetarySystem) -> None:
     assert system.own.centre_distance == pytest.approx(1.5 * 45 / 2 / math.cos(math.radians(20.0)), rel=1e-14)
+
+
+def test_the_check_shows_each_gear_and_mesh_as_it_shows_those_of_pairs(system: PlanetarySystem) -> None:
+    """Circles, p_x = pi m_n/sin beta, eps_beta = b/p_x, and eps_alpha by the rolls to both tips in the section."""
+    beta = math.radians(20.0)
+    text = printed(page(*blocks(system, system.contributors)))
+    circles = [1.5 * teeth / math.cos(beta) + tips for teeth, tips in ((24, 3.0), (66, -2.7), (21, 3.0))]
+    assert row_of(text, "tip diameter d_a [mm]") == [f"{own:.4f}" for own in circles]
+    assert row_of(text, "helix angle β [°], hand") == ["20,", "left", "20,", "right", "20,", "right"]
+    pitch = math.pi * 1.5 / math.sin(beta)
+    assert row_of(text, "axial pitch p_x [mm]")[:1] == [f"{pitch:.4f},"]
+    assert row_of(text, "overlap ratio ε_β") == [f"{12 / pitch:.4f}"] * 2
+    angle = math.atan(math.tan(ALPHA) / math.cos(beta))
+
+    def roll(teeth: int, tips: float) -> float:
+        return math.tan(math.acos(1.5 * teeth * math.cos(angle) / (1.5 * teeth + tips * math.cos(beta))))
+
+    # at the reference circles, where the working angle is that of the teeth
+    outside = 24 * (roll(24, 3.0) - math.tan(angle)) + 21 * (roll(21, 3.0) - math.tan(angle))
+    inside = 21 * (roll(21, 3.0) - math.tan(angle)) - 66 * (roll(66, -2.7) - math.tan(angle))
+    ratios = [outside / (2 * math.pi), inside / (2 * math.pi)]
+    assert row_of(text, "contact ratio ε_α") == [f"{own:.4f}" for own in ratios]
+    assert row_of(text, "total contact ratio ε_γ") == [f"{own + 12 / pitch:.4f}" for own in ratios]

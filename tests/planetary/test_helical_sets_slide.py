@@ -12,7 +12,7 @@ from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model import Model
 
 ARCMIN = 10800 / math.pi  # in a radian
-PLAYS = {"motor": 70.0, "countershaft": 110.0, "arm": 50.0, "output": 30.0}  # um
+PLAYS = {"motor": 70.0, "countershaft": 110.0, "arm": 50.0, "output": 30.0, "ring": 90.0, "planet": 160.0}  # um
 
 
 @dataclass(frozen=True)
@@ -114,6 +114,8 @@ def by_screws(own: dict[str, Toothed], *, stepped: bool) -> float:
             own["pinion"].teeth * own["pinion"].screw,
         ],
         "output": [0.0, 0.0, 0.0, own["last"].teeth * own["last"].screw],
+        "ring": [0.0, 0.0, own["ring"].teeth * own["ring"].screw, 0.0],
+        "planet": [0.0, own["P1"].teeth * own["P1"].screw, -on_ring.teeth * on_ring.screw, 0.0],  # all of them alike
     }
     turned = {shaft: np.linalg.solve(rows, np.array(own_row))[3] for shaft, own_row in moved.items()}
     return sum(PLAYS[shaft] / 1000 * abs(turn) for shaft, turn in turned.items())

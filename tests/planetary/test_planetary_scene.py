@@ -95,7 +95,7 @@ REFUSED = {
     "another tolerance": (
         ("{kind: eccentricity, of: sun,", "{kind: run_out, of: sun,"),
         "tolerances.sun eccentricity.kind: expected of planetary sets tooth_thickness, eccentricity, "
-        "tooth_run_out, clocking, "
+        "tooth_run_out, clocking, axial_play, "
         "planet_pin, bore_position, got run_out",
     ),
     "single flanks": (
@@ -105,7 +105,7 @@ REFUSED = {
             "law: {kind: random_walk, fill: [0.7, 1]}}\n  sun eccentricity:",
         ),
         "tolerances.sun pitch.kind: expected of planetary sets tooth_thickness, eccentricity, "
-        "tooth_run_out, clocking, planet_pin, "
+        "tooth_run_out, clocking, axial_play, planet_pin, "
         "bore_position, got pitch_deviation",
     ),
     "one mesh": (

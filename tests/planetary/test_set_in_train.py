@@ -285,7 +285,7 @@ REFUSED = {
     "flanks of the sun": (
         ("sun eccentricity: {kind: eccentricity,", "sun eccentricity: {kind: run_out,"),
         "tolerances.sun eccentricity.kind: expected of planetary sets tooth_thickness, eccentricity, "
-        "tooth_run_out, clocking, "
+        "tooth_run_out, clocking, axial_play, "
         "planet_pin, bore_position, got run_out",
     ),
     "an idle carrier": (

@@ -22,6 +22,7 @@ from tol3d.numerics.arrays import Array
 ISO53_ROOT_FILLET: Final = 0.38  # of the module; fillet of the standard basic rack, ISO 53:1998, profile A
 FULL_ROUND_MARGIN: Final = 1e-9  # mm; two fillets of a space may touch, not overlap
 STEEPEST_HELIX: Final = math.radians(60)  # of a gear on parallel axes; steeper ones are worms
+SAME_LEAD: Final = 1e-9  # of a twist; gears drawn for one lead differ by the digits of their helix angles
 
 
 @dataclass(frozen=True)

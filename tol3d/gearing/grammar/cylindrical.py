@@ -1,7 +1,7 @@
 """Cylindrical gears of the parts of a scene, without what other entries make of them."""
 
 from tol3d.gearing.grammar.parts import HelicalGearSpec, InternalGearSpec, SpurGearSpec, helix_of
-from tol3d.gears import LEFT_HAND, RIGHT_HAND, InternalGear, SpurGear
+from tol3d.gears import InternalGear, SpurGear
 
 CylindricalSpec = SpurGearSpec | HelicalGearSpec | InternalGearSpec
 
@@ -28,7 +28,7 @@ def _spur_gear(spec: SpurGearSpec | HelicalGearSpec) -> SpurGear:
         root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
         bore=0.0 if spec.bore is None else spec.bore.internal,
         helix_angle=angle,
-        hand=LEFT_HAND if hand == "left" else RIGHT_HAND,
+        hand=hand,
     )
 
 
@@ -45,5 +45,5 @@ def _internal_gear(spec: InternalGearSpec) -> InternalGear:
         root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
         outer_diameter=None if spec.outer_diameter is None else spec.outer_diameter.internal,
         helix_angle=angle,
-        hand=LEFT_HAND if hand == "left" else RIGHT_HAND,
+        hand=hand,
     )

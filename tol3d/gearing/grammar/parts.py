@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from tol3d.gearing.raceways import DeepGroove, ObliqueContact, Raceways
+from tol3d.gears.flank import LEFT_HAND, RIGHT_HAND, Hand
 from tol3d.scene.bases import GrowingSpec, Length, PartSpec
 from tol3d.scene.entry import Entry, Reference, Unusable
 from tol3d.scene.name import Name
@@ -20,6 +21,10 @@ class TurningSpec(PartSpec):
     """A part with an axis of its own, about which it turns or is held: a gear, or that of another mechanism."""
 
     words: ClassVar[str] = "a gear"
+
+
+class PinnedSpec(PartSpec):
+    """A part that turns on a pin of another one, and slides along it: a planet."""
 
 
 MOST_TEETH = 10_000  # far more than anyone hobs; a typing error would build for days
@@ -133,11 +138,11 @@ class InternalGearSpec(GearSpec, GrowingSpec):
         return self
 
 
-def helix_of(spec: PartSpec) -> tuple[float, str]:
+def helix_of(spec: PartSpec) -> tuple[float, Hand]:
     """Helix angle [rad] and hand of a gear; 0 of all but helical ones."""
     if isinstance(spec, HelicalGearSpec | InternalGearSpec):
-        return spec.helix_angle.internal, spec.hand or "right"
-    return 0.0, "right"
+        return spec.helix_angle.internal, LEFT_HAND if spec.hand == "left" else RIGHT_HAND
+    return 0.0, RIGHT_HAND
 
 
 class BevelGearSpec(BoredGearSpec):

@@ -22,11 +22,11 @@ from tol3d.gearing.model.measure import AnyStage, Mix, ParallelStage, Slide
 from tol3d.gearing.model.model import Model
 from tol3d.gearing.model.networks import Network
 from tol3d.gearing.shafts import Mesh
+from tol3d.gears.cylindrical_gear import SAME_LEAD
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 
 MOST_MIXES: Final = 2000  # each is compared in every trial; two paths of six shafts that slide have eight
-SAME_LEAD: Final = 1e-9  # of a twist; gears drawn for one lead differ by the digits of their helix angles
 
 
 def sliding_shafts(model: Model) -> tuple[str, ...]:

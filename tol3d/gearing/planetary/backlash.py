@@ -24,6 +24,25 @@ from tol3d.study.system.draw import Draw, Each, Scalar
 from tol3d.study.system.each_planar import EachOwn
 
 
+def pair_meshes(own: PlanetarySet, made: Made) -> list[Mesh]:
+    """Meshes of one planet as those of pairs, the central gear as the driver.
+
+    Args:
+        own: the set.
+        made: its gears by their names, nominal.
+    """
+    return [
+        Mesh(
+            mesh.name,
+            mesh.central.name,
+            mesh.planet.name,
+            cylindrical_pair(made[mesh.central.name], made[mesh.planet.name], own.centre_distance),
+            RIGHT,
+        )
+        for mesh in own.meshes
+    ]
+
+
 def set_backlash(
     own: PlanetarySet,
     made: Made,
@@ -41,11 +60,9 @@ def set_backlash(
         copula: which contributors are correlated.
     """
     found = list[BacklashLimits]()
-    for mesh in own.meshes:
-        pair = cylindrical_pair(made[mesh.central.name], made[mesh.planet.name], own.centre_distance)
+    for mesh, turned in zip(own.meshes, pair_meshes(own, made), strict=True):
         gears = tuple(GearPart(name, made[name]) for name in (mesh.central.name, mesh.planet.name))
-        turned = Mesh(mesh.name, mesh.central.name, mesh.planet.name, pair, RIGHT)
-        outwards = 1.0 if pair.wheel_origin[0] > 0.0 else -1.0
+        outwards = 1.0 if turned.pair.wheel_origin[0] > 0.0 else -1.0
         drawn = tuple(_of_pair(mesh, made, contributors, acts, outwards))
         model = Model(mesh.name, gears, (), drawn, (turned,), ())
         found += backlash_stages(model, GearSystem, EXACT, copula)

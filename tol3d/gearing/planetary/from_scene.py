@@ -1,11 +1,14 @@
 """A planetary set from a scene, with its deviations and measures, and warnings of probable slips."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
+
+import numpy as np
 
 from tol3d.assembly.grammar.zone import ProcessLawSpec
 from tol3d.gearing.grammar.measures import GearStudyOptions
+from tol3d.gearing.grammar.tolerances.axial_play import AxialPlaySpec
 from tol3d.gearing.model.from_scene import implausible_teeth
 from tol3d.gearing.planetary.exact.shown import Made, made_gears
 from tol3d.gearing.planetary.grammar.measures import (
@@ -23,6 +26,7 @@ from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
 from tol3d.gearing.planetary.refusals import set_of
 from tol3d.gearing.planetary.spring_curve import LeafSpring
 from tol3d.gearing.planetary.system import PlanetarySystem
+from tol3d.gearing.reducers.deviations import Acts
 from tol3d.gearing.reducers.from_scene import ReducerKind
 from tol3d.gearing.reducers.trials import ReducerMeasure, reducer_measure
 from tol3d.scene import Scene
@@ -39,7 +43,7 @@ def _implausible(scene: Scene, planetary_set: PlanetarySet) -> tuple[str, ...]:
         SceneError: a tooth is thinned until nothing is left of its tip.
     """
     made = made_gears(scene, planetary_set)
-    return (*implausible_teeth(scene, made), *_pins(scene, planetary_set, made))
+    return (*implausible_teeth(scene, made), *_pins(scene, planetary_set, made), *_idle(scene, planetary_set))
 
 
 def _pins(scene: Scene, planetary_set: PlanetarySet, made: Made) -> Iterator[str]:
@@ -60,6 +64,23 @@ def _pins(scene: Scene, planetary_set: PlanetarySet, made: Made) -> Iterator[str
         words += f"that overlap by up to {taken - room:.4g} mm where pins are at their worst places"
         words += "; check the units of the pins' places"
         yield warned(scene.origin, ("moves", planetary_set.name, "planets"), words)
+
+
+def _idle(scene: Scene, own: PlanetarySet) -> Iterator[str]:
+    """Axial plays that turn nothing, with the reason."""
+    planet = scene.of(PlanetarySpec)[own.name].planet
+    turning = np.abs([own.slide_turns(shaft) for shaft in (own.output, own.input)]).max(axis=0)
+    acting = {shaft for shaft, turn in zip(own.shafts, turning, strict=True) if turn}
+    if own.planet_slides.any():
+        acting.add(planet)
+    for name, spec in scene.of(AxialPlaySpec).items():
+        if spec.of in acting or spec.of not in (*own.shafts, planet):
+            continue
+        if not any(mesh.planet.twist for mesh in own.meshes):
+            words = f"no gear of {own.name!r} is helical, and spur gears do not screw"
+        else:
+            words = "the thrusts of its meshes cancel on each planet, whose gears have one lead"
+        yield warned(scene.origin, ("tolerances", name), f"acts on nothing: {words}")
 
 
 def _of_pins(scene: Scene, planetary_set: PlanetarySet) -> Iterator[tuple[KeyPath, PlanetPinSpec | BorePositionSpec]]:
@@ -95,18 +116,28 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
     """
     own = SETS.alone(scene)
     contributors, acts = SETS.contributors(scene, own)
+    measures = tuple(_measure(scene, own, name, spec) for name, spec in scene.measures.items())
     return PlanetarySystem(
         scene.scene,
         contributors,
-        tuple(_measure(scene, own, name, spec) for name, spec in scene.measures.items()),
+        measures,
         own,
         acts,
         made_gears(scene, own),
         scene.of(PlanetarySpec)[own.name].friction,
         scene.options(GearStudyOptions).profile_steps,
         _leaf_spring(scene.parts[own.carrier]),
-        implausible=_implausible(scene, own),
+        implausible=(*_implausible(scene, own), *_unread(scene, acts, measures)),
     )
+
+
+def _unread(scene: Scene, acts: Mapping[str, Acts], measures: Sequence[ReducerMeasure]) -> Iterator[str]:
+    """Axial plays of shafts that no measure reads: each side of a load has them at one end."""
+    if any(measure.reading == "lost motion" for measure in measures):
+        return
+    for name, own in acts.items():
+        if own.effect == "slide" and own.gear:
+            yield warned(scene.origin, ("tolerances", name), "acts on nothing: no planetary_lost_motion is measured")
 
 
 def _leaf_spring(carrier: Any) -> LeafSpring | None:

@@ -47,7 +47,7 @@ def _gear(scene: Scene, name: str) -> SetGear:
     assert isinstance(spec, GearSpec)
     return SetGear(
         name, spec.teeth, spec.module.internal, spec.pressure_angle.internal, spec.profile_shift, spec.addendum,
-        isinstance(spec, InternalGearSpec), helix_of(spec)[0],
+        isinstance(spec, InternalGearSpec), *helix_of(spec),
     )  # fmt: skip
 
 

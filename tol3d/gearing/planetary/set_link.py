@@ -1,9 +1,8 @@
 """Planetary sets between two shafts of a train, whose play is the set's lost motion at its output."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -31,8 +30,6 @@ from tol3d.scene import Scene
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.system.copula import Copula
 from tol3d.study.system.system import KeyPath
-
-SAME_LEAD: Final = 1e-9  # of a twist; gears drawn for one lead differ by the digits of their helix angles
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,20 +63,15 @@ class SetLink(ReducerLink):
 
         Planets whose gears have one lead leave the carrier where it is: their thrusts cancel.
         """
-        own, turned = self.own, float(self.rate)
-        kappa = {part: self.made[part].twist for part in (own.input, own.output, own.held) if part != own.carrier}
-        if own.carrier not in kappa and own.carrier in (own.input, own.output):
-            by = turned if own.carrier == own.output else 1 / turned
-            first = kappa[own.input if own.carrier == own.output else own.output] * by
-            rest = kappa[own.held] * (1 - by)
-            kappa[own.carrier] = first + rest if not math.isclose(first, -rest, rel_tol=SAME_LEAD) else 0.0
-        return {self.driver: kappa[own.input], self.driven: kappa[own.output]}
+        own = self.own
+        ends = ((self.driver, own.input), (self.driven, own.output))
+        return {shaft: float(own.slide_turns(part)[own.shafts.index(part)]) for shaft, part in ends}
 
     def lost(self, turning: StackUp | Contact, deviated: Deviated, turns: Array) -> Lost:
         """See ReducerLink; a set that jams lacks room at both ends."""
         own = self.own
         free = turning.free(deviated, turns, own.output, own.opposite(own.output))
-        return free.play(own.arm(own.output)), free.ends.mean(axis=1), np.asarray(free.status == NO_ROOM)
+        return free.play(own, deviated, own.output), free.ends.mean(axis=1), np.asarray(free.status == NO_ROOM)
 
     @property
     def centrals(self) -> Mapping[str, tuple[Acts, float]]:

@@ -120,12 +120,13 @@ class PlanetaryMethod(ReducerMethod):
         """
         own = self.system.own
         free = self.turning.free(deviated, turns, measure.shaft, own.opposite(measure.shaft))
-        lost = free.play(own.arm(measure.shaft))
+        lost = free.play(own, deviated, measure.shaft)
         lost[free.status == STALLED] = np.nan
         if measure.reading == "lost motion":
             return lost[:, None], free
         beyond = self.overcome.free(deviated, turns, measure.shaft, own.opposite(measure.shaft))
-        width = np.where(free.status == NO_ROOM, lost, beyond.ends[:, 1] - beyond.ends[:, 0] - lost)
+        turns_more = np.diff(beyond.ends)[:, 0] - np.diff(free.ends)[:, 0]  # shafts slide as far in both
+        width = np.where(free.status == NO_ROOM, lost, turns_more)
         status = np.maximum(free.status, beyond.status)
         width[status == STALLED] = np.nan
         return width[:, None], replace(free, status=status)

@@ -222,7 +222,8 @@ class StripContact:
         arms = np.abs(own.all_rows[:, unknowns]).max(axis=0)
         readouts = np.eye(len(unknowns))
         for _ in range(MOST_STEPS):
-            gaps = self.engine.gaps(placed_gears(own, self.made, deviated, turns, at))
+            gears = placed_gears(own, self.made, deviated, turns, at)
+            gaps = self.engine.gaps(gears) + self._slides(deviated, gears)
             least, most = (push - at[of_springs] for push in own.spring_ends)
             lower = np.concatenate([-gaps[..., 0].ravel(), least])[None]
             upper = np.concatenate([gaps[..., 1].ravel(), most])[None]
@@ -237,6 +238,14 @@ class StripContact:
             if (np.abs(step) * arms).max() < LAST_MOVE:
                 return at, OK, -1, 0.0
         return at, STALLED, -1, 0.0
+
+    def _slides(self, deviated: Deviated, gears: Sequence[PlacedGear]) -> Array:
+        """Further room of both flanks of each mesh (planets, meshes, 2) [mm], as planets slide on to either stop."""
+        own = self.own
+        firsts = gears[len(own.meshes) :: len(own.gears)]  # of each planet, in the middle at a height of 0
+        moved = np.array([gear.world_from_gear[2, 3] for gear in firsts])[:, None] * own.planet_slides
+        half = deviated.planet_slide[0, :, None] * (np.abs(own.planet_slides) / 2)
+        return np.stack([half - moved, half + moved], axis=-1)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,10 @@ import numpy as np
 
 from tol3d.errors import InputError
 from tol3d.gearing.presenting.drawing_sizes import Thickness, sizes_table
+from tol3d.gearing.presenting.gear_tables import gear_blocks, pair_blocks
 from tol3d.gearing.reducers.deviations import Acts
 from tol3d.gearing.reducers.link import ReducerLink
+from tol3d.gearing.shafts import Mesh
 from tol3d.gears import Gear
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, World
@@ -103,13 +105,14 @@ class ReducerDisplay(ABC):
         return View(world=self.seen)
 
 
-def gear_sizes(
-    gears: Mapping[str, Gear], acts: Mapping[str, Acts], contributors: Sequence[Contributor]
+def gear_data(
+    gears: Mapping[str, Gear], meshes: Iterable[Mesh], acts: Mapping[str, Acts], contributors: Sequence[Contributor]
 ) -> Sequence[PageItem]:
-    """Table of tooth sizes as shops measure them, with the tolerances of tooth thickness.
+    """Gears of a reducer, their tooth sizes as shops measure them with the tolerances of thickness, and their meshes.
 
     Args:
-        gears: by name.
+        gears: by name; none of a reducer without.
+        meshes: of one planet.
         acts: effects of contributors, by name.
         contributors: of the system.
     """
@@ -118,7 +121,7 @@ def gear_sizes(
         for contributor in contributors
         if (effect := acts.get(contributor.name)) is not None and effect.effect.endswith("thickness")
     )
-    return sizes_table(gears, stated)
+    return [*gear_blocks(gears), *sizes_table(gears, stated), *pair_blocks(meshes)] if gears else []
 
 
 def from_front(world: World) -> Look:

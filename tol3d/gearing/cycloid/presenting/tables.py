@@ -14,8 +14,10 @@ from tol3d.gearing.cycloid.reducer.rv_set import RVSet
 from tol3d.gearing.cycloid.rv_link import RVLink
 from tol3d.gearing.cycloid.summary_types import FIRST_PRINCIPLES, PAPER, CycloidOfRun, CycloidStageSummary
 from tol3d.gearing.cycloid.system import RVSystem
-from tol3d.gearing.reducers.shown import gear_sizes
+from tol3d.gearing.reducers.shown import gear_data
+from tol3d.gearing.shafts import Mesh
 from tol3d.gearing.summary.types import TrainsOfRun
+from tol3d.gears import RIGHT
 from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, Table, line, note, titled
 from tol3d.study.runs.summary.run import RunSummary
@@ -30,8 +32,9 @@ def blocks(reducer: RVSystem | RVLink, contributors: Sequence[Contributor]) -> S
     own, acts = reducer.own, reducer.acts
     first = own.first
     gears = {} if first is None else {name: first.gear(name) for name in (first.sun, first.planet)}
+    meshes = [] if first is None else [Mesh(f"{first.sun}–{first.planet}", *gears, first.pair, RIGHT)]
     formulas = stage_blocks(stages_by_formula(own, acts, contributors))
-    return (*map(line, _words(own)), *gear_sizes(gears, acts, contributors), _levers(own), *formulas)
+    return (*map(line, _words(own)), *gear_data(gears, meshes, acts, contributors), _levers(own), *formulas)
 
 
 def _words(rv_set: RVSet) -> list[str]:

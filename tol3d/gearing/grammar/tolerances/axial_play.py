@@ -7,7 +7,15 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tol3d.gearing.effects import NOTHING, AxialPlay
-from tol3d.gearing.grammar.parts import BearingSpec, BevelGearSpec, ShaftReference, ShaftSpec, TurningSpec, gears_on
+from tol3d.gearing.grammar.parts import (
+    BearingSpec,
+    BevelGearSpec,
+    PinnedSpec,
+    ShaftReference,
+    ShaftSpec,
+    TurningSpec,
+    gears_on,
+)
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec, Meaning, Nominal
 from tol3d.scene.bases import MoveSpec, PartSpec
 from tol3d.scene.entry import Contradiction, Entry, Reference
@@ -16,14 +24,14 @@ from tol3d.scene.name import Name
 
 @dataclass(frozen=True)
 class SlidingReference(ShaftReference):
-    """The name of a shaft, or of a bearing of one."""
+    """The name of a shaft, of a bearing of one, or of a planet."""
 
-    specs: tuple[type[Entry], ...] = (ShaftSpec, TurningSpec, BearingSpec)
+    specs: tuple[type[Entry], ...] = (ShaftSpec, TurningSpec, PinnedSpec, BearingSpec)
 
     @property
     def expected(self) -> str:
         """As of any reference."""
-        return "a shaft, of a gear that none carries, or of a bearing"
+        return "a shaft, of a gear that none carries, of a planet or of a bearing"
 
 
 def shaft_at(of: str, parts: Mapping[str, PartSpec]) -> str:
@@ -37,12 +45,14 @@ class AxialPlaySpec(GearingToleranceSpec):
 
     Where the load changes sides, the thrust of helical gears moves the shaft through it, and they screw in their mates'
     teeth: lost motion, angular backlash and what a tip does of it grow by c |tan(beta)/r| of one gear, of two gears on
-    the shaft by the difference of theirs, each with its hand. Normal backlash stays, and so does all of spur gears.
+    the shaft by the difference of theirs, each with its hand. Normal backlash stays, and so does all of spur gears. In
+    planetary sets central gears and carrier slide, and each planet on its pin, if its gears differ in their leads.
     """
 
     kind: Literal["axial_play"]
     of: Name = Field(
-        description="the shaft, a gear that is its own, or the bearing that holds the shaft along its axis"
+        description="the shaft, a gear that is its own, the bearing that holds the shaft along its axis, or a planet: "
+        "each has its own play"
     )
 
     nominal: ClassVar[str] = "clearance"

@@ -113,6 +113,7 @@ class Contact:
         room = np.array([mesh.clearance for mesh in own.meshes]) + np.zeros((len(turns), own.planets, len(places)))
         cosines = np.array([mesh.central.along_action for mesh in own.meshes])
         thicker = deviated.central_thickness[:, None] + deviated.planet_thickness[:, places].swapaxes(1, 2)
+        slid = deviated.planet_slide[:, :, None] * (np.abs(own.planet_slides) / 2)
         meshes = self._meshes
         middle = meshes[:, 1] * deviated.planet_clocking[:, places].swapaxes(1, 2)
         middle = middle + meshes[:, 2] * meshes[:, 0] * deviated.central_clocking[:, None]
@@ -124,7 +125,7 @@ class Contact:
             own.centre_distance,
             *self._placed(deviated, turns, directions),
             np.ascontiguousarray(deviated.aside),
-            np.ascontiguousarray(room - thicker * cosines / 2),
+            np.ascontiguousarray(room - thicker * cosines / 2 + slid),
             np.ascontiguousarray(middle),
         )
 

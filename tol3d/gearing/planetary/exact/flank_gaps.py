@@ -3,7 +3,7 @@
 Both involutes of a contact are normal to one line that is tangent to both base circles, so that their distance is
 measured along it: the unwound length of each, by the azimuth at which it begins on its base circle. Flanks of
 all teeth lie a base pitch apart, alike for both gears; the pair nearest to the pitch point is taken. Of helical gears
-this is the section in the middle of the faces, and the normals lean out of it by the base helix angle.
+this is the section in the middle of the central gear's face, and the normals lean out of it by the base helix angle.
 """
 
 import math
@@ -69,7 +69,9 @@ def _gap(central: PlacedGear, planet: PlacedGear, flank: Flank) -> tuple[float, 
     touched = azimuth - side * working if ring else azimuth + math.pi - side * working
     along = side * np.array([-math.sin(touched), math.cos(touched)])
     begin = planet.world_from_gear[:2, 3] + r_p * np.array([math.cos(touched), math.sin(touched)])
-    own = r_p * (side * (_turn(planet) - touched) + _half(planet))
+    lower = central.world_from_gear[2, 3] - planet.world_from_gear[2, 3]
+    turn = _turn(planet) + planet.gear.twist * lower  # in the section in the middle of the central gear's face
+    own = r_p * (side * (turn - touched) + _half(planet))
     # of the ring's flank as unwound from its own base circle, which the line leaves earlier; of a sun from the far end
     if ring:
         its = r_c * (side * (_turn(central) - touched) - _half(central)) - apart * math.sin(working)

@@ -1,7 +1,7 @@
 """A set as it stands in one trial, and moved: turned in contact, swung through its play, or opened by its carrier."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,10 +9,11 @@ import numpy as np
 from tol3d.errors import InputError
 from tol3d.gearing.model.pairs import cylindrical_gear
 from tol3d.gearing.planetary.exact.contact import Contact
+from tol3d.gearing.planetary.exact.flank_gaps import flank_gaps
 from tol3d.gearing.planetary.model.deviated import Deviated
 from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
 from tol3d.gearing.shown.placed import PlacedGear
-from tol3d.gears import InternalGear, SpurGear
+from tol3d.gears import LEFT, RIGHT, InternalGear, SpurGear
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import upright_pose
 from tol3d.scene import Scene
@@ -123,7 +124,22 @@ def placed_gears(
             thick = deviated.planet_thickness[0, g, k] / (gear.module * gear.teeth)
             pose = upright_pose(angle, place, heights[g])
             found.append(PlacedGear(f"{gear.name} of planet {k + 1}", made[gear.name], pose, float(thick), 1.0))
-    return tuple(found)
+    return tuple(_slid(planetary_set, deviated, found) if deviated.planet_slide.any() else found)
+
+
+def _slid(own: PlanetarySet, deviated: Deviated, gears: Sequence[PlacedGear]) -> Iterator[PlacedGear]:
+    """The gears, planets shifted along their pins to the middle of the mesh that opens as they slide, or towards it."""
+    yield from gears[: len(own.meshes)]
+    gaps = {(gap.planet, gap.mesh, gap.flank): gap.value for gap in flank_gaps(own, gears)}
+    for k, play in enumerate(deviated.planet_slide[0].tolist()):
+        shift = 0.0
+        for m in own.unlike_leads:
+            off = (gaps[k, m, LEFT] - gaps[k, m, RIGHT]) / 2 / own.meshes[m].central.base_helix_cosine
+            shift = min(max(off / own.planet_slides[m], -play / 2), play / 2)
+        screwed = upright_pose(own.planet_twist * shift, level=shift)
+        first = len(own.meshes) + k * len(own.gears)
+        for gear in gears[first : first + len(own.gears)]:
+            yield replace(gear, world_from_gear=gear.world_from_gear @ screwed)
 
 
 def made_gears(scene: Scene, planetary_set: PlanetarySet) -> Made:

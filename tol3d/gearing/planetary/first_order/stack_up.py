@@ -52,6 +52,7 @@ class StackUp:
             thicker = deviated.central_thickness[:, place, None] + deviated.planet_thickness[:, gear]
             room = mesh.clearance - thicker * mesh.central.along_action / 2
             room = room + s * np.sin(angle) * apart[..., 0]
+            room = room + deviated.planet_slide * (abs(own.planet_slides[place]) / 2)
             moved = s * np.cos(angle) * apart[..., 1]
             moved = moved - mesh.planet.base_radius * deviated.planet_clocking[:, gear]
             moved = moved - s * mesh.central.base_radius * deviated.central_clocking[:, place, None]
@@ -103,7 +104,9 @@ class StackUp:
         """The same of a shaft's free turn at turns (trials,) of the output, the opposite shaft standing."""
         stands = self.own.opposite(shaft)
         low, high = (self.slopes(deviated, turns[:, None], shaft, stands, end, np.ones_like) for end in range(2))
-        return high.plus(low, -1.0)
+        found = high.plus(low, -1.0)
+        found.shaft_slide[...] = np.abs(self.own.slide_turns(shaft))
+        return found
 
     def _run(
         self,
@@ -169,6 +172,7 @@ class StackUp:
             found.planet_thickness[:, gear] += thicker
             pushed = np.stack([np.sin(angle) * opened[:, :, place], np.cos(angle) * moved[:, :, place]], axis=-1) * s
             found.pins[...] += pushed
+            found.planet_slide[...] += abs(own.planet_slides[place]) / 2 * opened[:, :, place]
             found.aside[:, place] += turned(pushed, np.array(own.azimuths) / (2 * np.pi)).sum(axis=1)
             found.planet_clocking[:, gear] -= mesh.planet.base_radius * moved[:, :, place]
             found.central_clocking[:, place] -= s * mesh.central.base_radius * moved[:, :, place].sum(axis=1)

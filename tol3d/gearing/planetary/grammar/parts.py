@@ -5,9 +5,8 @@ from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from tol3d.gearing.grammar.parts import GearSpec, TurningSpec
+from tol3d.gearing.grammar.parts import GearSpec, PinnedSpec, TurningSpec
 from tol3d.scene import Scene
-from tol3d.scene.bases import PartSpec
 from tol3d.scene.entry import Reference
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
@@ -87,7 +86,7 @@ class FlexibleCarrierSpec(CarrierSpec):
         return self
 
 
-class PlanetSpec(PartSpec):
+class PlanetSpec(PinnedSpec):
     """A planet with one gear, or a compound one with several; tooth 0 of all of them points outwards.
 
     A set has several alike. A tolerance of one of these gears is a deviation that each planet has of its own.

@@ -26,6 +26,8 @@ class Deviated(Deviations):
         pins: outwards and counter-clockwise off their places (trials, planets, 2) [mm].
         aside: the axis of the planets' circle off that of each central gear (trials, centrals, 2) [mm], in the frame of
             the carrier, where it stands without backlash.
+        shaft_slide: play of each shaft along its axis (trials, shafts) [mm].
+        planet_slide: of each planet on its pin (trials, planets).
     """
 
     central_thickness: Array
@@ -36,6 +38,8 @@ class Deviated(Deviations):
     planet_clocking: Array
     pins: Array
     aside: Array
+    shaft_slide: Array
+    planet_slide: Array
 
     @classmethod
     def nothing(cls, model: PlanetarySet, trials: int) -> "Deviated":
@@ -50,6 +54,8 @@ class Deviated(Deviations):
             np.zeros((trials, gears, planets)),
             np.zeros((trials, planets, 2)),
             np.zeros((trials, centrals, 2)),
+            np.zeros((trials, len(model.shafts))),
+            np.zeros((trials, planets)),
         )
 
     def reached(self, model: PlanetarySet, acts: Acts) -> tuple[Array, Along]:
@@ -57,6 +63,9 @@ class Deviated(Deviations):
         pins = {"pin": self.pins, "pin outwards": self.pins[:, :, 0], "pin round": self.pins[:, :, 1]}
         if acts.effect in pins:
             return pins[acts.effect], shaped(pins[acts.effect])
+        if acts.effect == "slide":
+            into = self.shaft_slide[:, model.shafts.index(acts.gear)] if acts.gear else self.planet_slide
+            return into, shaped(into)
         centrals = [mesh.central.name for mesh in model.meshes]
         of_planets = acts.gear not in centrals
         place = [gear.name for gear in model.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
@@ -101,9 +110,14 @@ class Free:
             np.zeros((trials, positions)), np.empty(trials, np.int8), np.empty(trials, np.int64), np.empty(trials)
         )
 
-    def play(self, arm: float) -> Array:
-        """From end to end (trials,) [rad]; of a set that jams its shortfall at an arm [mm], negative."""
-        return np.where(self.status == NO_ROOM, -2 * self.lacking / arm, self.ends[:, 1] - self.ends[:, 0])
+    def play(self, own: PlanetarySet, deviated: Deviated, shaft: str) -> Array:
+        """From end to end (trials,) [rad], with what shafts screw as they slide; of a set that jams its shortfall.
+
+        That is the shortfall of each contact at the arm of the shaft, negative.
+        """
+        slid = (deviated.shaft_slide * np.abs(own.slide_turns(shaft))).sum(axis=1)
+        lacking = -2 * self.lacking / own.arm(shaft)
+        return np.where(self.status == NO_ROOM, lacking, self.ends[:, 1] - self.ends[:, 0] + slid)
 
     @property
     def written(self) -> tuple[Array, NDArray[np.int8], Places, Array]:

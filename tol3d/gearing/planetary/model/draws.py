@@ -12,8 +12,10 @@ from tol3d.assembly.zones import Process
 from tol3d.assembly.zones.catalogue import axis_section
 from tol3d.assembly.zones.zone_draw import ZoneDraw
 from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
+from tol3d.gearing.grammar.tolerances.axial_play import AxialPlaySpec
 from tol3d.gearing.grammar.tolerances.composite import ToothRunOutSpec
 from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, ToothThicknessSpec
+from tol3d.gearing.planetary.grammar.parts import PlanetSpec
 from tol3d.gearing.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
 from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
 from tol3d.gearing.reducers.deviations import Acts
@@ -105,7 +107,9 @@ class EachJudgedZone(EachZone):
         return np.asarray(np.any(outside, axis=0))
 
 
-KINDS: Final = (ToothThicknessSpec, EccentricitySpec, ToothRunOutSpec, ClockingSpec, PlanetPinSpec, BorePositionSpec)
+KINDS: Final = (
+    ToothThicknessSpec, EccentricitySpec, ToothRunOutSpec, ClockingSpec, AxialPlaySpec, PlanetPinSpec, BorePositionSpec
+)  # fmt: skip
 """Kinds of tolerances of planetary sets; those of gears are shared with trains."""
 
 
@@ -124,6 +128,8 @@ def acts_of(scene: Scene, planetary_set: PlanetarySet, name: str, spec: Any) -> 
             raise scene.refuse(("tolerances", name, "of"), f"expected {planetary_set.carrier!r}, got {spec.of!r}")
         effects = {"radial": "pin outwards", "tangential": "pin round"}
         return Acts("pin" if isinstance(spec, BorePositionSpec) else effects.get(spec.direction, "pin"))
+    if isinstance(spec, AxialPlaySpec):
+        return _slide(scene, planetary_set, name, spec)
     known = [mesh.central.name for mesh in planetary_set.meshes] + [gear.name for gear in planetary_set.gears]
     if spec.of not in known:
         raise scene.refuse(("tolerances", name, "of"), f"expected a gear of {planetary_set.name!r}, got {spec.of!r}")
@@ -134,6 +140,20 @@ def acts_of(scene: Scene, planetary_set: PlanetarySet, name: str, spec: Any) -> 
         factor = spec.sign_in(ring=isinstance(part, InternalGearSpec)) * arc_per_stated
         return Acts("thickness", spec.of, factor, spec.over)
     return Acts("clocking" if isinstance(spec, ClockingSpec) else "offset", spec.of)
+
+
+def _slide(scene: Scene, own: PlanetarySet, name: str, spec: AxialPlaySpec) -> Acts:
+    """Effect of an axial play of a shaft, or of each planet."""
+    if spec.of in own.shafts:
+        return Acts("slide", spec.of, least=0.0)
+    if isinstance(scene.parts[spec.of], PlanetSpec):
+        if len(own.unlike_leads) > 1:
+            unlike = ", ".join(own.meshes[m].name for m in own.unlike_leads)
+            words = f"expected planets with one lead in all meshes but one, got {spec.of!r} with others in {unlike}"
+            raise scene.refuse(("tolerances", name, "of"), f"{words}; hold the planets along their pins")
+        return Acts("slide", least=0.0)
+    words = f"expected the planet, {', '.join(own.shafts[:-1])} or {own.shafts[-1]}, got {spec.of!r}"
+    raise scene.refuse(("tolerances", name, "of"), words)
 
 
 def draw_of(scene: Scene, planetary_set: PlanetarySet, acts: Acts, spec: Any) -> Draw:

@@ -13,6 +13,7 @@ import numpy as np
 
 from tol3d.gearing.planetary.model.set_mesh import SetGear, SetMesh
 from tol3d.gearing.planetary.model.tooth_set import CentralMesh, ToothSet
+from tol3d.gears.cylindrical_gear import SAME_LEAD
 from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.programme import first_basis
 
@@ -174,6 +175,50 @@ class PlanetarySet:
             for mesh in self.meshes
         )
         return max(abs(pitch - round(pitch)) for pitch in pitches)
+
+    # slides along the axis --------------------------------------------------------------------------
+
+    def slide_turns(self, shaft: str) -> Array:
+        """Turn of a shaft per shift along the axis of each shaft (shafts,) [rad/mm], the opposite one standing.
+
+        A gear that slides by dz in the teeth of a mate at rest screws by kappa dz; as s r_bC kappa_C = -r_bP kappa_P,
+        n changes by s r_bC kappa_C (z_P - z_C), and planets slide with their carrier. All contacts go along, so that
+        the free turn grows by that of the whole play, whichever contacts there are.
+        """
+        centrals = len(self.meshes)
+        places = [place for place in self.unknowns(self.opposite(shaft)) if place <= centrals + 1]
+        rows = self.all_rows[:centrals]  # of the first planet, whose turn is the last of these unknowns
+        screwed = np.array([rows[m, m] * mesh.central.twist for m, mesh in enumerate(self.meshes)])
+        shifted = np.column_stack([np.diag(screwed), -screwed])
+        turned = np.linalg.solve(rows[:, places], shifted)[places.index(self.shafts.index(shaft))]
+        least = SAME_LEAD * max(abs(mesh.central.twist) for mesh in self.meshes)
+        return np.where(np.abs(turned) > least, turned, 0.0)
+
+    @cached_property
+    def unlike_leads(self) -> tuple[int, ...]:
+        """Meshes whose planet's gear has another lead than those of most meshes of a planet.
+
+        A planet that slides turns with the others; in these alone it then opens one flank and closes the other.
+        """
+        twists = [mesh.planet.twist for mesh in self.meshes]
+        alike = [[math.isclose(own, other, rel_tol=SAME_LEAD) for other in twists] for own in twists]
+        most = max(alike, key=sum)
+        return tuple(m for m, same in enumerate(most) if not same)
+
+    @property
+    def planet_twist(self) -> float:
+        """Twist of a planet in its other meshes, in which it screws as it slides [rad/mm]."""
+        return next(mesh.planet.twist for m, mesh in enumerate(self.meshes) if m not in self.unlike_leads)
+
+    @cached_property
+    def planet_slides(self) -> Array:
+        """Change of n of each mesh per shift of a planet along its pin (meshes,), as it screws in its other meshes.
+
+        r_bP (kappa_0 - kappa_P), kappa_0 the twist in those. Where one mesh alone changes, the shifts within half of
+        the play on either side are as good as more room on both flanks.
+        """
+        changes = [mesh.planet.base_radius * (self.planet_twist - mesh.planet.twist) for mesh in self.meshes]
+        return np.array([own if m in self.unlike_leads else 0.0 for m, own in enumerate(changes)])
 
     # the programme --------------------------------------------------------------------------------
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
+from tol3d.gears.flank import RIGHT_HAND, Hand
 from tol3d.gears.involute import inverse_involute, involute
 
 EXTERNAL: Final = 1
@@ -26,6 +27,7 @@ class SetGear:
         addendum: in modules.
         is_ring: whether it is an internal gear.
         helix_angle: at the reference cylinder [rad].
+        hand: of the helix.
     """
 
     name: str
@@ -36,6 +38,12 @@ class SetGear:
     addendum: float = 1.0
     is_ring: bool = False
     helix_angle: float = 0.0
+    hand: Hand = RIGHT_HAND
+
+    @property
+    def twist(self) -> float:
+        """kappa = h tan(beta)/r [rad/mm], by which it screws in a mate at rest as it slides."""
+        return self.hand * math.sin(self.helix_angle) / (self.module * self.teeth / 2)
 
     @cached_property
     def transverse_pressure_angle(self) -> float:

@@ -7,17 +7,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Final
 
-from tol3d.gearing.planetary.model.set_mesh import SetMesh
+from tol3d.gearing.planetary.backlash import pair_meshes
 from tol3d.gearing.planetary.set_link import SetLink
 from tol3d.gearing.planetary.summary_types import PlanetaryOfRun, PlanetarySetSummary
 from tol3d.gearing.planetary.system import PlanetarySystem
 from tol3d.gearing.presenting.drawing_sizes import backlash_table
-from tol3d.gearing.reducers.shown import gear_sizes
+from tol3d.gearing.reducers.shown import gear_data
 from tol3d.report.declared import declared_table, side_by_side
 from tol3d.report.page import PageItem, Shown, line, note, titled
 from tol3d.report.system_check import system_blocks
 from tol3d.study.runs.summary.run import RunSummary
-from tol3d.study.runs.summary.shows import Computed, RowOf, Shows
+from tol3d.study.runs.summary.shows import Shows
 from tol3d.study.system.contributor import Contributor
 from tol3d.study.trials.simulation import Simulation
 
@@ -30,9 +30,8 @@ def blocks(reducer: PlanetarySystem | SetLink, contributors: Sequence[Contributo
     return (
         line(ratio),
         line(f"{planets}{own.period_planet_turns} turns of the planets"),
-        declared_table("mesh, nominal", [(mesh.name, MeshRow(mesh)) for mesh in own.meshes]),
+        *gear_data(reducer.made, pair_meshes(own, reducer.made), reducer.acts, contributors),
         *set_blocks(reducer.summaries),
-        *gear_sizes(reducer.made, reducer.acts, contributors),
     )
 
 
@@ -42,16 +41,6 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     assert isinstance(system, PlanetarySystem)
     backlash = backlash_table(system.backlash_limits(simulation.copula))
     return (*blocks(system, system.contributors), *backlash, *system_blocks(simulation))
-
-
-class MeshRow(RowOf[SetMesh]):
-    """A nominal mesh of a set."""
-
-    teeth = Computed(Shows("teeth", "d"), lambda own: own.of.central.teeth)
-    planet_teeth = Computed(Shows("of the planet", "d"), lambda own: own.of.planet.teeth)
-    angle = Computed(Shows("working pressure angle", ".4f", "°"), lambda own: own.of.working_pressure_angle)
-    backlash = Computed(Shows("normal backlash", ".3f", "µm"), lambda own: own.of.normal_backlash)
-    tight_at = Computed(Shows("tight at a", ".4f", "mm"), lambda own: own.of.tight_centre_distance)
 
 
 BALANCE: Final = "torques in equilibrium, pairs in contact carry alike"
