@@ -130,15 +130,13 @@ def forces_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     helical = helical_gears(scene)
     for name, spec in scene.of(BearingClearanceSpec).items():
         bearing = scene.parts[spec.of]
-        if spec.direction != "tooth_force" or not isinstance(bearing, BearingSpec):
+        if spec.direction not in ("tooth_force", "reversing") or not isinstance(bearing, BearingSpec):
             continue
         gear = next((g for g in gears_on(bearing.shaft, scene.parts) if g in helical), None)
         bearings = [own for own in scene.of(BearingSpec).values() if own.shaft == bearing.shaft]
         if gear is not None and len(bearings) < 2:
-            words = (
-                "expected apart, random, {at: …} or a second bearing, got tooth_force: the thrust of the helical gear "
-            )
-            yield ("tolerances", str(name), "direction"), f"{words}{gear!r} would turn the shaft over"
+            words = f"expected apart, random, {{at: …}} or a second bearing, got {spec.direction}: the thrust of the"
+            yield ("tolerances", str(name), "direction"), f"{words} helical gear {gear!r} would turn the shaft over"
 
 
 def steep_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
