@@ -139,6 +139,25 @@ def forces_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
             yield ("tolerances", str(name), "direction"), f"{words} helical gear {gear!r} would turn the shaft over"
 
 
+def unloaded_bearings(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Bearings in which no force pushes their shaft to and fro: the other one, at the spur gear, carries all of it."""
+    helical = helical_gears(scene)
+    for name, spec in scene.of(BearingClearanceSpec).items():
+        bearing, mesh = scene.parts[spec.of], scene.moves.get(spec.mesh or "")
+        if spec.direction != "reversing" or not isinstance(bearing, BearingSpec) or not isinstance(mesh, GearMeshSpec):
+            continue
+        shaft, own = scene.parts[bearing.shaft], set(gears_on(bearing.shaft, scene.parts)).intersection(mesh.gears)
+        for gear in own.difference(helical):
+            at = shaft.carries[gear].at.internal if isinstance(shaft, ShaftSpec) else 0.0
+            if any(
+                other.shaft == bearing.shaft and other.at.internal == at != bearing.at.internal
+                for other in scene.of(BearingSpec).values()
+            ):
+                words = f"expected apart, random, tooth_force or {{at: …}}, got reversing: the gear {gear!r} sits at"
+                advice = f"the other bearing of {bearing.shaft!r}, so that its force does not load this one"
+                yield ("tolerances", str(name), "direction"), f"{words} {advice}"
+
+
 def steep_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Helix angles that nobody cuts for parallel axes."""
     for name, gear in helical_gears(scene).items():
