@@ -28,6 +28,11 @@ class Effect(ABC):
         """Its elementary effects; itself alone."""
         return (self,)
 
+    @property
+    def reversed(self) -> "Effect":
+        """Effect while the load is on the other flanks; the same but of what lies where the load pushes it."""
+        return self
+
     @abstractmethod
     def acts_in(self, mesh: Mesh) -> bool:
         """True if it changes the relative position of the gears of a mesh, or their flanks."""
@@ -102,6 +107,24 @@ class CombinedEffect(Effect):
 
 
 NOTHING = CombinedEffect(())
+
+
+@dataclass(frozen=True)
+class Reversing(CombinedEffect):
+    """Several effects of one deviation while the working flanks carry the load, as many while the others do.
+
+    A shaft crosses its clearance where the load changes sides.
+
+    Args:
+        others: in the same order, of the same classes and parts.
+    """
+
+    others: tuple[Effect, ...] = ()
+
+    @property
+    @override
+    def reversed(self) -> CombinedEffect:
+        return CombinedEffect(self.others)
 
 
 Vector = tuple[float, float, float]

@@ -21,6 +21,7 @@ from tol3d.gearing.grammar.checks import (
     second_axial_plays,
     shafts_thicker_than_hubs,
     steep_helices,
+    unloaded_bearings,
 )
 from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.gearing.grammar.published import PublishedTrains
@@ -94,6 +95,7 @@ GEARING: Final = Mechanism(
         readings_of_helices,
         forces_of_helices,
         second_axial_plays,
+        unloaded_bearings,
     ),
     warnings=(
         implausible_displacements,

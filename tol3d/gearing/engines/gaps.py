@@ -139,6 +139,9 @@ class ReadingEngine(Engine, Protocol):
     def build(self, deviations: Array) -> Build:
         """Builds of the trials with these deviations (trials, components), as build.build makes them."""
 
+    def reversed_build(self, deviations: Array) -> Build:
+        """Builds of the reversed model: shafts lie where the load on the other flanks pushes them."""
+
     def read(
         self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array, turning: frozenset[str] = frozenset()
     ) -> MeshReading:

@@ -130,15 +130,32 @@ def forces_of_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     helical = helical_gears(scene)
     for name, spec in scene.of(BearingClearanceSpec).items():
         bearing = scene.parts[spec.of]
-        if spec.direction != "tooth_force" or not isinstance(bearing, BearingSpec):
+        if spec.direction not in ("tooth_force", "reversing") or not isinstance(bearing, BearingSpec):
             continue
         gear = next((g for g in gears_on(bearing.shaft, scene.parts) if g in helical), None)
         bearings = [own for own in scene.of(BearingSpec).values() if own.shaft == bearing.shaft]
         if gear is not None and len(bearings) < 2:
-            words = (
-                "expected apart, random, {at: …} or a second bearing, got tooth_force: the thrust of the helical gear "
-            )
-            yield ("tolerances", str(name), "direction"), f"{words}{gear!r} would turn the shaft over"
+            words = f"expected apart, random, {{at: …}} or a second bearing, got {spec.direction}: the thrust of the"
+            yield ("tolerances", str(name), "direction"), f"{words} helical gear {gear!r} would turn the shaft over"
+
+
+def unloaded_bearings(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Bearings in which no force pushes their shaft to and fro: the other one, at the spur gear, carries all of it."""
+    helical = helical_gears(scene)
+    for name, spec in scene.of(BearingClearanceSpec).items():
+        bearing, mesh = scene.parts[spec.of], scene.moves.get(spec.mesh or "")
+        if spec.direction != "reversing" or not isinstance(bearing, BearingSpec) or not isinstance(mesh, GearMeshSpec):
+            continue
+        shaft, own = scene.parts[bearing.shaft], set(gears_on(bearing.shaft, scene.parts)).intersection(mesh.gears)
+        for gear in own.difference(helical):
+            at = shaft.carries[gear].at.internal if isinstance(shaft, ShaftSpec) else 0.0
+            if any(
+                other.shaft == bearing.shaft and other.at.internal == at != bearing.at.internal
+                for other in scene.of(BearingSpec).values()
+            ):
+                words = f"expected apart, random, tooth_force or {{at: …}}, got reversing: the gear {gear!r} sits at"
+                advice = f"the other bearing of {bearing.shaft!r}, so that its force does not load this one"
+                yield ("tolerances", str(name), "direction"), f"{words} {advice}"
 
 
 def steep_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:

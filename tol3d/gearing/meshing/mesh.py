@@ -1,6 +1,6 @@
 """The mesh move: the driven gear turns until the working flanks touch."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +59,7 @@ class Meshing:
         engine: measures gaps.
         model, mesh, build: the builds; one row per position.
         reading: place on the face, and teeth, at which flanks are evaluated.
+        turned: builds in which the load is on the other flanks, if the shafts lie elsewhere then.
     """
 
     engine: Engine
@@ -66,6 +67,7 @@ class Meshing:
     mesh: Mesh
     build: Build
     reading: Reading
+    turned: Build | None = None
 
     @property
     def flank(self) -> Flank:
@@ -94,7 +96,13 @@ class Meshing:
 
     def rows(self, rows: NDArray[np.intp]) -> "Meshing":
         """The same for some builds."""
-        return Meshing(self.engine, self.model, self.mesh, self.build.rows(rows), self.reading)
+        turned = None if self.turned is None else self.turned.rows(rows)
+        return replace(self, build=self.build.rows(rows), turned=turned)
+
+    @property
+    def reversed(self) -> "Meshing | None":
+        """The same while the other flanks carry the load; None if no shaft lies elsewhere then."""
+        return None if self.turned is None else replace(self, build=self.turned, turned=None)
 
     def gaps_of(self, flank: Flank, angles: tuple[Array, Array], section: bool, wanted: NDArray[np.bool_]) -> Gaps:
         """Gaps of one flank side of the driver, for the builds (rows,) that are wanted."""

@@ -23,7 +23,8 @@ def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
     """Value of a backlash measure in every row [mm, or rad for an angle].
 
     normal: shortest distance of the non-working flanks while the working ones touch.
-    angular: turn of one gear, the other held at rest, from the working to the non-working contact.
+    angular: turn of one gear, the other held at rest, from the working to the non-working contact; of a reversal that
+        under the load on those flanks.
     circumferential: that turn of the driven gear times its nominal working radius, an arc.
     rest: the driven gear's turn at rest, less that with its space in the middle of the driver's tooth.
 
@@ -39,8 +40,10 @@ def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
     turn_driver = kind.quantity == "angular_backlash" and kind.gear == mesh.driver
     rows, flank = np.flatnonzero(known), opposite(mesh.working_flank)
     start = (seat.driver_angle[rows], seat.driven_angle[rows])
-    angles, _, touched = meshing.rows(rows).turn_to_contact(
-        flank, start, turn_driver=turn_driver, known=seat.non_working.rows(rows)
+    end = meshing.reversed
+    known_gaps = seat.non_working.rows(rows) if end is None else None
+    angles, _, touched = (
+        (end or meshing).rows(rows).turn_to_contact(flank, start, turn_driver=turn_driver, known=known_gaps)
     )
     mover = 0 if turn_driver else 1
     turn = np.full(len(known), np.nan)
@@ -122,6 +125,7 @@ class Seats:
         build: one row a trial.
         seats: by mesh name, positions and reading; rows are trials x positions, positions fastest.
         meshings: the builds that were seated there.
+        turned: the builds with the load on the other flanks, if a reading ends there.
     """
 
     model: Model
@@ -129,18 +133,21 @@ class Seats:
     build: Build
     seats: Mapping[SeatKey, MeshSeat] = field(default_factory=dict)
     meshings: Mapping[SeatKey, Meshing] = field(default_factory=dict)
+    turned: Build | None = None
 
 
 def seated(model: Model, engine: Engine, trials: Trials, measures: Sequence[Measure] | None = None) -> Seats:
     """Build the trials and seat every mesh at every set of positions that some measure reads; all of the model's."""
-    made = build(model, trials.deviations)
+    made, keys = build(model, trials.deviations), all_seat_keys(model, model.measures if measures is None else measures)
+    turned = build(model.reversed, trials.deviations) if any(key[2].reversing for key in keys) else None
     seats: dict[SeatKey, MeshSeat] = {}
     meshings: dict[SeatKey, Meshing] = {}
-    for key in all_seat_keys(model, model.measures if measures is None else measures):
+    for key in keys:
         angles = driver_angles(key, trials)
-        meshings[key] = Meshing(engine, model, model.mesh(key[0]), made.repeated(angles.shape[1]), key[2])
+        other = turned.repeated(angles.shape[1]) if turned and key[2].reversing else None
+        meshings[key] = Meshing(engine, model, model.mesh(key[0]), made.repeated(angles.shape[1]), key[2], other)
         seats[key] = meshings[key].seat(angles.ravel())
-    return Seats(model, trials, made, seats, meshings)
+    return Seats(model, trials, made, seats, meshings, turned)
 
 
 def play_of(measure: Measure, seats: Seats) -> Play:

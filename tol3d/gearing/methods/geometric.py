@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tol3d.cad.solids import FlankStrips
 from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engine, MeshReading, ReadingEngine
+from tol3d.gearing.meshing.reversals import to_reversal
 from tol3d.gearing.meshing.seats import driver_angles, measure_backlash, moved, read_backlash, seated, turning_gear
 from tol3d.gearing.model import Backlash, Measure, Mesh, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measure, gear_measures
@@ -68,9 +69,10 @@ class GeometricMethod:
         return self._answers(trials, measures, read, contacts, status)
 
     def _by_readings(self, engine: ReadingEngine, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        made = engine.build(trials.deviations)
-        readings: dict[SeatKey, MeshReading] = {}
         wanted = self._backlashes_by_key(measures)
+        made = engine.build(trials.deviations)
+        turned = engine.reversed_build(trials.deviations) if any(key[2].reversing for key in wanted) else made
+        readings: dict[SeatKey, MeshReading] = {}
         for key in filter(partial(_only_rests, wanted), wanted):
             if key not in readings:
                 both = engine.rests(made, self.model.mesh(key[0]), key[2], np.array(key[1]))
@@ -78,7 +80,7 @@ class GeometricMethod:
                 readings |= {(*key[:2], side): own for side, own in zip(sides, both, strict=True)}
         for key, backlashes in wanted.items():
             if not _only_rests(wanted, key):
-                readings[key] = self._read(engine, made, trials, key, backlashes)
+                readings[key] = self._read(engine, (made, turned), trials, key, backlashes)
         contacts: Details = {}
         for key in sorted(wanted, key=_side):
             mesh, own = self.model.mesh(key[0]), readings[key]
@@ -93,12 +95,20 @@ class GeometricMethod:
         return self._answers(trials, measures, read, contacts, status)
 
     def _read(
-        self, engine: ReadingEngine, made: Build, trials: Trials, key: SeatKey, backlashes: Sequence[Backlash]
+        self,
+        engine: ReadingEngine,
+        builds: tuple[Build, Build],
+        trials: Trials,
+        key: SeatKey,
+        backlashes: Sequence[Backlash],
     ) -> MeshReading:
-        """A mesh where some backlashes are read."""
+        """A mesh where some backlashes are read; the second builds have the load on the other flanks."""
         mesh, angles = self.model.mesh(key[0]), driver_angles(key, trials)
+        made, turned = (own.repeated(angles.shape[1]) for own in builds)
         turning = frozenset(gear for backlash in backlashes if (gear := turning_gear(backlash, mesh)))
-        return engine.read(made.repeated(angles.shape[1]), mesh, key[2], angles.ravel(), turning)
+        if not key[2].reversing:
+            return engine.read(made, mesh, key[2], angles.ravel(), turning)
+        return to_reversal(engine, turned, mesh, key[2], engine.read(made, mesh, key[2], angles.ravel()), turning)
 
     def _backlashes_by_key(self, measures: Sequence[Measure]) -> dict[SeatKey, list[Backlash]]:
         """Every way of reading a mesh, with the backlashes that are wanted there."""

@@ -20,6 +20,7 @@ from tol3d.gearing.model.mesh_measures import measure_of
 from tol3d.gearing.model.model import GearPart, Housing, Model
 from tol3d.gearing.model.nominal import Nominal
 from tol3d.gearing.model.pairs import assembly_warning, internal, pair_of, undercut_warning
+from tol3d.gearing.model.reversals import refuse_opposed_loads
 from tol3d.gearing.model.shaft_trees import refuse_no_trees, refuse_revolving
 from tol3d.gearing.model.slides import idle_slides, refuse_shared_thrust
 from tol3d.gearing.model.trains import (
@@ -231,6 +232,7 @@ def model_from_scene(scene: Scene) -> Model:
     measures = tuple(jumping(model, measure_of(scene, name, model)) for name in scene.measures)
     model = replace(model, measures=measures)
     refuse_shared_thrust(scene, model)
+    refuse_opposed_loads(scene, model)
     idle = (warned(scene.origin, ("tolerances", name), sentence) for name, sentence in idle_slides(model))
     return replace(model, warnings=(*model.warnings, *idle))
 

@@ -25,12 +25,14 @@ class Reading:
         teeth: "all" candidate pairs, or one tooth in its space, the driver's or the driven's next to the
             line of centres.
         flank: the driver's flanks that touch: "drive", its working ones, or "back", the others.
+        reversing: True if the turn to the other flanks ends where the load on those pushes the shafts.
     """
 
     contact: Literal["face", "section"] = "face"
     gap: Literal["face", "section"] = "face"
     teeth: Literal["all", "driver", "driven"] = "all"
     flank: Literal["drive", "back"] = "drive"
+    reversing: bool = False
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from tol3d.gearing.grammar.measures import (
 from tol3d.gearing.model.links import Link, Parallel, least_common
 from tol3d.gearing.model.measure import Backlash, Kind, Measure, Reading, TransmissionError
 from tol3d.gearing.model.model import Model
+from tol3d.gearing.model.reversals import of_reversals
 from tol3d.gearing.model.slides import slides_of_mesh
 from tol3d.gearing.shafts import Mesh, Train
 from tol3d.gears import one_tooth_acts, one_tooth_share
@@ -138,8 +139,12 @@ BacklashSpec = NormalBacklashSpec | CircumferentialBacklashSpec | AngularBacklas
 def _(spec: BacklashSpec, scene: Scene, name: str, model: Model) -> Measure:
     mesh = model.mesh(spec.of)
     gear = getattr(spec, "gear", None) or mesh.driven
-    slides = slides_of_mesh(model, mesh, gear) if spec.kind == "angular_backlash" else ()
-    kind = Backlash(spec.kind, mesh.name, gear, reader_of(spec)(mesh), slides)
+    reading = reader_of(spec)(mesh)
+    if spec.kind == "angular_backlash":
+        slides = slides_of_mesh(model, mesh, gear)
+        kind = Backlash(spec.kind, mesh.name, gear, of_reversals(model, mesh, reading), slides)
+    else:
+        kind = Backlash(spec.kind, mesh.name, gear, reading)
     return Measure(name, kind, _positions_of_mesh(spec, mesh), spec.take)
 
 

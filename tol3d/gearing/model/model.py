@@ -5,13 +5,13 @@ A contributor: one toleranced deviation, its draw, and its effect on the parts.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from tol3d.gearing.effects import Effect
+from tol3d.gearing.effects import Effect, Reversing
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.layout import Layout, Turning, layout_of
@@ -215,6 +215,17 @@ class Model:
         if fixed is None or isinstance(kind, Backlash) or (isinstance(kind, TransmissionError) and not kind.train):
             return fixed
         return _turned(self.layout.mesh_turn[mesh], measure.positions)
+
+    @cached_property
+    def reversed(self) -> "Model":
+        """The model whose shafts lie in their bearings as the load on the other flanks pushes them."""
+        loaded = (replace(contributor, effect=contributor.effect.reversed) for contributor in self.contributors)
+        return replace(self, contributors=tuple(loaded))
+
+    def reverses(self, mesh: Mesh) -> bool:
+        """True if gears of a mesh lie elsewhere while its other flanks carry the load."""
+        effects = (contributor.effect for contributor in self.contributors)
+        return any(isinstance(effect, Reversing) and effect.acts_in(mesh) for effect in effects)
 
     # its trials -------------------------------------------------------------------------------------
 

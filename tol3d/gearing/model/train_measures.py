@@ -21,6 +21,7 @@ from tol3d.gearing.model.measure import (
 from tol3d.gearing.model.mesh_measures import Reader, measured, reader_of
 from tol3d.gearing.model.model import Model
 from tol3d.gearing.model.networks import Network, Walk
+from tol3d.gearing.model.reversals import of_reversals
 from tol3d.gearing.model.slides import slides_along, with_shared_slides
 from tol3d.gearing.model.trains import gravity_torque, refuse_incomparable
 from tol3d.gearing.shafts import Arm, Train
@@ -76,7 +77,7 @@ def _single(model: Model, link: Link, ratio: float, read: Reader) -> Stage:
         own = model.link(link.name)
         return Stage(link.name, abs(ratio), None, 1 if ratio > 0.0 else -1, own.has_middle, own.compares)
     _, carried = model.layout.carrying[mesh.driven]
-    backlash = Backlash("angular_backlash", mesh.name, mesh.driven, read(mesh))
+    backlash = Backlash("angular_backlash", mesh.name, mesh.driven, of_reversals(model, mesh, read(mesh)))
     return Stage(link.name, abs(ratio), backlash, carried.sense if ratio > 0.0 else -carried.sense)
 
 

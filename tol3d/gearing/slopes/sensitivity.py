@@ -31,6 +31,9 @@ from tol3d.numerics.arrays import Array
 from tol3d.study.system.taken import ROWS_AT_ONCE
 from tol3d.study.system.trials import Trials
 
+Moves = tuple[BuildRates, BuildRates]
+"""Rates of the builds, and of those with the load on the other flanks."""
+
 
 def sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measure) -> Array:
     """Derivatives of a measure's value by each component of the deviations, each trial at its own build.
@@ -52,19 +55,23 @@ def sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measure
 def _sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measure) -> Array:
     alone = replace(model, measures=(measure,))
     seats, count = seated(alone, engine, trials), measure.positions.in_a_trial
-    moves = build_rates(model, seats.build, trials.deviations).rows(np.repeat(np.arange(len(trials)), count))
-    rates = _free_rates(alone, measure, moves, seats).reshape(len(trials), count, -1)
+    rows = np.repeat(np.arange(len(trials)), count)
+    moves = build_rates(model, seats.build, trials.deviations).rows(rows)
+    turned = moves
+    if seats.turned:
+        turned = build_rates(model.reversed, seats.turned, trials.deviations).rows(rows)
+    rates = _free_rates(alone, measure, (moves, turned), seats).reshape(len(trials), count, -1)
     rates = moved_rates(measure.kind, play_of(measure, seats).free(), rates)
     return taken_rates(measure, geometric_values(measure, seats), rates)
 
 
-def _free_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats) -> Array:
+def _free_rates(model: Model, measure: Measure, moves: Moves, seats: Seats) -> Array:
     """Derivatives of a measure's play, (rows, components)."""
     kind = measure.kind
     if isinstance(kind, Backlash):
         key = seat_key(model, measure, kind)
         return _rates(kind, seats.meshings[key], moves, seats.seats[key]) + _sliding_rates(seats, kind.slides, measure)
-    total = np.zeros((len(moves.scale), model.component_count))
+    total = np.zeros((len(moves[0].scale), model.component_count))
     if isinstance(kind, TransmissionError):
         for factor, backlash in kind.backlashes:
             key = seat_key(model, measure, backlash)
@@ -87,10 +94,10 @@ def _sliding_rates(seats: Seats, slides: Sequence[Slide], measure: Measure) -> A
     return total if not slides else np.repeat(total, measure.positions.in_a_trial, axis=0)
 
 
-def _variable_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats, variable: Variable) -> Array:
+def _variable_rates(model: Model, measure: Measure, moves: Moves, seats: Seats, variable: Variable) -> Array:
     """Derivatives of a stage's play, or of the angle at which its driven gear rests, (rows, components)."""
     stage, what = variable
-    rates = np.zeros((len(moves.scale), model.component_count))
+    rates = np.zeros((len(moves[0].scale), model.component_count))
     if isinstance(stage, str) or what == "slide":
         by_shaft = axial_rates(model, str(stage), seats.trials.deviations)
         return np.repeat(by_shaft, measure.positions.in_a_trial, axis=0)
@@ -109,11 +116,11 @@ def _variable_rates(model: Model, measure: Measure, moves: BuildRates, seats: Se
     return rates + _rates(resting, seats.meshings[key], moves, seats.seats[key])
 
 
-def _rates(backlash: Backlash, meshing: Meshing, moves: BuildRates, seat: MeshSeat) -> Array:
+def _rates(backlash: Backlash, meshing: Meshing, moves: Moves, seat: MeshSeat) -> Array:
     """Derivatives of a backlash at every position, (rows, components); NaN where the mesh could not be assembled."""
     good = np.flatnonzero(seat.status == OK)
     rates = np.full((len(seat.status), meshing.model.component_count), np.nan)
-    contacts = _Contacts(meshing.rows(good), moves.rows(good))
+    contacts = _Contacts(meshing.rows(good), moves[0].rows(good))
     at_rest = (seat.driver_angle[good], seat.driven_angle[good])
     if backlash.quantity == "rest_angle":
         section = meshing.reading.contact == "section"
@@ -123,7 +130,8 @@ def _rates(backlash: Backlash, meshing: Meshing, moves: BuildRates, seat: MeshSe
         rates[good] = _of_gap(contacts, at_rest, seat.working.rows(good), seat.non_working.rows(good))
         return rates
     turn_driver = backlash.is_angle and backlash.gear == meshing.mesh.driver
-    turn = _of_turn(contacts, at_rest, seat.working.rows(good), turn_driver=turn_driver)
+    end = contacts if meshing.reversed is None else _Contacts(meshing.reversed.rows(good), moves[1].rows(good))
+    turn = _of_turn((contacts, end), at_rest, seat.working.rows(good), turn_driver=turn_driver)
     rates[good] = turn if backlash.is_angle else turn * meshing.mesh.pair.working_radii[1]
     return rates
 
@@ -136,13 +144,16 @@ def _of_gap(contacts: "_Contacts", at_rest: tuple[Array, Array], working: Gaps, 
     return gap.by_deviation + gap.by_turn[1][:, None] * touch.driven_turn
 
 
-def _of_turn(contacts: "_Contacts", at_rest: tuple[Array, Array], working: Gaps, *, turn_driver: bool) -> Array:
-    """Derivatives of the turn of one gear from its rest to the contact of the non-working flanks."""
-    meshing, flank = contacts.meshing, contacts.meshing.mesh.working_flank
+def _of_turn(
+    both: tuple["_Contacts", "_Contacts"], at_rest: tuple[Array, Array], working: Gaps, *, turn_driver: bool
+) -> Array:
+    """Derivatives of the turn of one gear from its rest to the contact of the non-working flanks, each in its build."""
+    contacts, last = both
+    meshing, flank = last.meshing, last.meshing.mesh.working_flank
     section = meshing.reading.contact == "section"
     touch = contacts.nearest(flank, at_rest, working, section=section)
     at_end, ends, touched = meshing.turn_to_contact(opposite(flank), at_rest, turn_driver=turn_driver)
-    end = contacts.nearest(opposite(flank), at_end, ends, section=section)
+    end = last.nearest(opposite(flank), at_end, ends, section=section)
     mover = 0 if turn_driver else 1
     if turn_driver:
         rate = -(end.by_deviation + end.by_turn[1][:, None] * touch.driven_turn) / end.by_turn[0][:, None]

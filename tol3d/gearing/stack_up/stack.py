@@ -5,17 +5,21 @@ Source: Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, 1533-1542, sect
 and delta = 45 deg.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.effects import ToothThickness
-from tol3d.gearing.model import Mesh, Model, Reading
-from tol3d.gearing.stack_up.term import Neglect, NominalMesh, Pair, Role
-from tol3d.gearing.stack_up.terms import contribution
+from tol3d.gearing.model import Contributor, Mesh, Model, Reading
+from tol3d.gearing.stack_up.term import Neglect, NominalMesh, Pair, Role, Term
+from tol3d.gearing.stack_up.terms import Contribution, contribution, of_both_loads
 from tol3d.gearing.stack_up.tooth_pairs import Moved, ToothPairs, distinct, tooth_pairs
 from tol3d.numerics.arrays import Array
+
+Shifts = tuple[Sequence[Term], Sequence[Term]]
+"""Openings by shifts of axes and by parts that grow, and shifts aside."""
 
 
 class Stack(NominalMesh[Pair]):
@@ -24,22 +28,44 @@ class Stack(NominalMesh[Pair]):
     def __init__(self, model: Model, mesh: Mesh, pair: Pair, reading: Reading) -> None:
         super().__init__(model, mesh, pair, reading)
         self.contributions = tuple(
-            contribution(effect, self, contributor)
-            for contributor in model.contributors
-            for effect in contributor.effect.singles
+            own for contributor in model.contributors for own in self._contributions(contributor)
         )
         self.terms = tuple(own.opening for own in self.contributions if own.opening)
         self.teeth = tooth_pairs(model, mesh, reading)
         self.sideways = tuple(own.aside for own in self.contributions if own.aside)
-        self._apart = tuple(
-            own.opening for own in self.contributions if own.opening and (own.along_line or own.strains)
-        )  # shifts of axes, and parts that grow
         self._widens = tuple(
             (contributor.name, effect.turn)
             for contributor in model.contributors
             for effect in contributor.effect.singles
             if isinstance(effect, ToothThickness) and effect.part == mesh.driver
         )  # half an angle of the driver's teeth [rad/mm]
+
+    def _contributions(self, contributor: Contributor) -> Iterator[Contribution]:
+        """Contributions of a contributor's effects; to a free turn between both loads where the reading is of that."""
+        singles, others = contributor.effect.singles, contributor.effect.reversed.singles
+        for effect, other in zip(singles, others, strict=True):
+            own = contribution(effect, self, contributor)
+            if self.reading.reversing and other != effect:
+                yield from of_both_loads(own, contribution(other, self, contributor), self)
+            else:
+                yield own
+
+    @cached_property
+    def _shifting(self) -> Mapping[int, Shifts]:
+        """Shifts of axes, by side of the driver's flanks that carry the load."""
+        work = self.mesh.resting_flank(self.reading.flank)
+        if not self.reading.reversing:
+            return dict.fromkeys((work, -work), _shifts(self.contributions))
+        return {
+            side: _shifts(
+                [
+                    contribution(effect, self, contributor)
+                    for contributor in model.contributors
+                    for effect in contributor.effect.singles
+                ]
+            )
+            for side, model in ((work, self.model), (-work, self.model.reversed))
+        }
 
     @property
     def nominal(self) -> float:
@@ -100,9 +126,9 @@ class Stack(NominalMesh[Pair]):
         leans, built = self._leans(builds), teeth.built(builds, trial)
         work = self.mesh.resting_flank(self.reading.flank)
         moved = self._moved(deviations, driver_angle)
-        working = teeth.taken(work, built, driver_angle, leans[work], moved)
+        working = teeth.taken(work, built, driver_angle, leans[work], moved[work])
         apart = np.maximum(whole - working, 0.0)
-        return working + teeth.taken(-work, built, driver_angle, leans[-work], moved, turns, apart)
+        return working + teeth.taken(-work, built, driver_angle, leans[-work], moved[-work], turns, apart)
 
     @property
     def turns_by_teeth(self) -> bool:
@@ -125,22 +151,35 @@ class Stack(NominalMesh[Pair]):
             return np.zeros((count, positions))
         trial, angles = np.repeat(np.arange(count), positions), np.tile(driver_angle, count)
         built, moved = self.teeth.built(deviations, trial), self._moved(deviations, angles, trial)
-        taken = self.teeth.taken(side, built, angles, self._leans(deviations)[side], moved)
+        taken = self.teeth.taken(side, built, angles, self._leans(deviations)[side], moved[side])
         return side * taken.reshape(count, positions)
 
-    def _moved(self, deviations: Array, driver_angle: Array, trial: NDArray[np.int64] | None = None) -> Moved | None:
-        """Axes and flanks that do not stand at their nominal places; None where all do.
+    def _moved(
+        self, deviations: Array, driver_angle: Array, trial: NDArray[np.int64] | None = None
+    ) -> Mapping[int, Moved | None]:
+        """Axes and flanks that do not stand at their nominal places, by side of the driver's touching flanks.
+
+        None where all do.
 
         Args:
             deviations: (rows, components), or (trials, components) where `trial` says which of them each row is.
             driver_angle: (rows,) [rad].
             trial: (rows,).
         """
-        if not (self._apart or self.sideways or self._widens):
+        work = self.mesh.resting_flank(self.reading.flank)
+        moved = self._moved_by(self._shifting[work], deviations, driver_angle, trial)
+        if not self.reading.reversing:
+            return {work: moved, -work: moved}
+        return {work: moved, -work: self._moved_by(self._shifting[-work], deviations, driver_angle, trial)}
+
+    def _moved_by(
+        self, shifts: Shifts, deviations: Array, driver_angle: Array, trial: NDArray[np.int64] | None
+    ) -> Moved | None:
+        if not (any(shifts) or self._widens):
             return None
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         apart, aside = np.zeros(len(driver_angle)), np.zeros(len(driver_angle))
-        for total, terms, by in ((apart, self._apart, 2 * self.sin), (aside, self.sideways, self.cos)):
+        for total, terms, by in ((apart, shifts[0], 2 * self.sin), (aside, shifts[1], self.cos)):
             for term in terms:
                 own = deviations[:, self.model.component_slices[term.contributor.name]]
                 total += term.change(own if trial is None else own[trial], angles) / by
@@ -170,7 +209,7 @@ class Stack(NominalMesh[Pair]):
             builds, trial = distinct(deviations)
             leans, built = self._leans(builds), self.teeth.built(builds, trial)
             moved = self._moved(deviations, driver_angle)
-            right, left = (self.teeth.taken(side, built, driver_angle, leans[side], moved) for side in (1, -1))
+            right, left = (self.teeth.taken(side, built, driver_angle, leans[side], moved[side]) for side in (1, -1))
             total = (right - left) / 2
         else:
             total = self._aside_by_tilts(in_plane, across, driver_angle)
@@ -188,3 +227,8 @@ class Stack(NominalMesh[Pair]):
     def neglects(self) -> tuple[Neglect, ...]:
         """Neglected first-order terms, each with its size; nothing else may differ to first order."""
         return ()
+
+
+def _shifts(contributions: Sequence[Contribution]) -> Shifts:
+    apart = [own.opening for own in contributions if own.opening and (own.along_line or own.strains)]
+    return apart, [own.aside for own in contributions if own.aside]

@@ -5,7 +5,7 @@ Each effect registers its own, external ones by `contributes`.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -85,6 +85,34 @@ def contribution(effect: Effect, mesh: NominalMesh[GearPair], contributor: Contr
         if function := _KNOWN.get((type(effect), pair)):
             return function(effect, mesh, contributor)
     raise TypeError(f"stack_up/terms.py has no function for the effect {type(effect).__name__}")
+
+
+def of_both_loads(drive: Contribution, coast: Contribution, mesh: NominalMesh[GearPair]) -> tuple[Contribution, ...]:
+    """Contributions of an effect to a free turn whose ends are read where either load pushes the shafts.
+
+    With o the opening and a the shift of the middle, the driven gear rests at a - s o/2 on the working flanks and at
+    a + s o/2 on the others, s its own working flank. From the first under one load to the second under the other one it
+    turns by s (a' - a) + (o + o')/2, with the middle at (a + a')/2 + s (o' - o)/4. Tilts take from each flank side by
+    itself, i + w c from the working one and i - w c from the other one, i in the plane of the axes and c across it, w
+    the driver's working flank.
+    """
+    found, side, own = [], mesh.mesh.driven_flank, mesh.mesh.working_flank
+    if drive.opening and coast.opening and drive.opening.tilts and coast.opening.tilts:
+        (first, first_across), (last, last_across) = (np.array(term.opening.tilts) for term in (drive, coast))
+        working, other = first + own * first_across, last - own * last_across
+        in_plane, across = (working + other) / 2, own * (working - other) / 2
+        largest = float(np.abs([in_plane, across]).max())
+        tilts = tuple(in_plane.tolist()), tuple(across.tolist())
+        found.append(Contribution(replace(drive.opening, coefficient=largest, tilts=tilts)))
+        drive, coast = replace(drive, opening=None), replace(coast, opening=None)
+    contributor = next((term.contributor for term in (drive.opening, drive.aside) if term), None)
+    if contributor is None:
+        return (*found, NOTHING)
+    opened, opens = (own.opening.coefficient if own.opening else 0.0 for own in (drive, coast))
+    stood, stands = (own.aside.coefficient if own.aside else 0.0 for own in (drive, coast))
+    opening = Term(contributor, (opened + opens) / 2 + side * (stands - stood))
+    aside = Term(contributor, (stood + stands) / 2 + side * (opens - opened) / 4)
+    return *found, replace(drive, opening=opening, aside=aside, by_shifts=opening if drive.by_shifts else None)
 
 
 @contributes(AxesOffset)

@@ -87,7 +87,8 @@ def _reading(reading: ModelReading) -> Reading:
 
 
 def _free_turn(model: Model, kind: Backlash) -> FreeTurn | None:
-    if kind.quantity != "normal_backlash":
+    """Lost motion by a normal backlash; None of others, and where shafts that cross their clearances add to it."""
+    if kind.quantity != "normal_backlash" or model.reverses(model.mesh(kind.mesh)):
         return None
     driven = model.mesh(kind.mesh).driven
     turn = per_normal_backlash(model, Backlash("angular_backlash", kind.mesh, driven))

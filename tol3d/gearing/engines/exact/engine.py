@@ -1,5 +1,6 @@
 """The exact engine: contact of the mathematical flanks, in compiled kernels; no solid, no mesh, no chord error."""
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.builds.build import Build
 from tol3d.gearing.builds.flank_offsets import FlankPlaces
-from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
+from tol3d.gearing.engines.exact.compiled_displacements import CompiledDisplacements, compiled_displacements
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.deviated_helical import DeviatedHelicalTooth
 from tol3d.gearing.engines.exact.flank_contact import ALL_TEETH, DRIVEN_TOOTH, DRIVER_TOOTH
@@ -65,6 +66,14 @@ class ExactEngine:
     def build(self, deviations: Array) -> Build:
         """See ReadingEngine.build."""
         return self._displacements.build(deviations)
+
+    def reversed_build(self, deviations: Array) -> Build:
+        """See ReadingEngine.reversed_build."""
+        return self._reversed_displacements.build(deviations)
+
+    @cached_property
+    def _reversed_displacements(self) -> CompiledDisplacements:
+        return compiled_displacements(self._model.reversed)
 
     def gaps(
         self,

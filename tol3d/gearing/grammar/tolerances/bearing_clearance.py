@@ -1,14 +1,14 @@
 """Radial clearance of bearings, which shifts and tilts the gears on their shafts."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from tol3d.gearing.effects import NOTHING, AxialPlay, AxisOffset, AxisTilt, Effect, Plane
-from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
+from tol3d.gearing.effects import NOTHING, AxialPlay, AxisOffset, AxisTilt, Effect, Plane, Reversing
+from tol3d.gearing.grammar.moves import BevelMeshSpec, GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import BearingSpec, BevelGearSpec, GearSpec, gears_on
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
     GearToleranceSpec,
@@ -18,6 +18,7 @@ from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
     together,
 )
 from tol3d.gearing.shafts import Carried, Mesh
+from tol3d.gears.flank import opposite
 from tol3d.scene.bases import MoveSpec, PartSpec
 from tol3d.scene.direction import At, FixedAngle, known_word, shape
 from tol3d.scene.entry import Contradiction, Entry, Reference
@@ -74,7 +75,7 @@ def _exact(cosine: float) -> float:
     return round(cosine) + 0.0 if abs(cosine - round(cosine)) < 1e-15 else cosine
 
 
-WORDS = ("apart", "random", "tooth_force")
+WORDS = ("apart", "random", "tooth_force", "reversing")
 
 
 class BearingClearanceSpec(GearToleranceSpec):
@@ -82,7 +83,9 @@ class BearingClearanceSpec(GearToleranceSpec):
 
     `apart` moves it along the line of centres so that positive opens, away from the mate, `tooth_force` along
     the force on its working flank, `{at: angle}` at an azimuth of the frame of gear or shaft at rest, `random`
-    anywhere. Of a bearing, the first two are those of the gear on its shaft that the mesh is of.
+    anywhere. `reversing` is tooth_force, and once the load has changed sides the force on the other flank: lost motion
+    contains that the axis crosses its clearance. Of a bearing, apart, tooth_force and reversing are those of the gear
+    on its shaft that the mesh is of.
 
     Of a bearing with contact_angle or grooves the same draw lets the shaft slide, as axial_play does: G_a of G_r.
     """
@@ -98,10 +101,10 @@ class BearingClearanceSpec(GearToleranceSpec):
     mesh: Name | None = Field(
         default=None,
         description="the mesh whose line of centres or tooth force gives the direction; needed where the gear is in "
-        "several, and for a bearing whose direction is apart or tooth_force",
+        "several, and for a bearing whose direction is apart, tooth_force or reversing",
     )
     direction: Annotated[
-        Annotated[Literal["apart", "random", "tooth_force"], Tag("word")] | FixedAngle,
+        Annotated[Literal["apart", "random", "tooth_force", "reversing"], Tag("word")] | FixedAngle,
         Discriminator(shape),
         known_word(*WORDS),
     ] = Field(default="apart", description="which way the axis moves")
@@ -147,10 +150,13 @@ class BearingClearanceSpec(GearToleranceSpec):
         meshes = tuple(name for name in moves if name in through)
         if self.mesh is not None and self.mesh not in meshes:
             yield Contradiction(("mesh",), f"a mesh of a gear on {bearing.shaft!r}", repr(self.mesh), meshes)
-        elif self.mesh is None and self.direction in ("apart", "tooth_force"):
+        elif self.mesh is None and self.direction in ("apart", "tooth_force", "reversing"):
             yield Contradiction(
                 ("mesh",), f"the mesh that a bearing's direction: {self.direction} is of", "none", meshes
             )
+        elif self.direction == "reversing" and self.mesh is not None and isinstance(moves[self.mesh], BevelMeshSpec):
+            words = f"reversing: how the thrust of the bevel gear of {self.mesh!r} loads the bearings is not simulated"
+            yield Contradiction(("direction",), "apart, random, tooth_force or {at: …}", words)
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """Half the clearance, away from the mesh, at an azimuth of the frame at rest, or along the tooth force."""
@@ -159,7 +165,18 @@ class BearingClearanceSpec(GearToleranceSpec):
             return self._meaning_of_bearing(bearing, nominal)
         if self.direction == "random":
             return in_direction([AxisOffset(self.of, factor=0.5)], self.direction)
-        return Meaning(AxisOffset(self.of, unit_vector(self._azimuth(self.of, nominal)), factor=0.5), least=0.0)
+
+        def pushed(mesh: Mesh) -> list[Effect]:
+            return [AxisOffset(self.of, unit_vector(self._azimuth(self.of, mesh, nominal)), factor=0.5)]
+
+        return Meaning(self._by_load(pushed, nominal.mesh_of(self.of, self.mesh)), least=0.0)
+
+    def _by_load(self, pushed: Callable[[Mesh], Sequence[Effect]], mesh: Mesh) -> Effect:
+        """Effects with the load on a mesh's working flanks, and on the others where the direction is reversing."""
+        loaded = pushed(mesh)
+        if self.direction != "reversing":
+            return together(loaded)
+        return Reversing(tuple(loaded), tuple(pushed(replace(mesh, working_flank=opposite(mesh.working_flank)))))
 
     def _meaning_of_bearing(self, bearing: BearingSpec, nominal: Nominal) -> Meaning:
         """The shaft's axis moves at the bearing by half the clearance, at its other bearings not at all.
@@ -178,22 +195,38 @@ class BearingClearanceSpec(GearToleranceSpec):
         if self.direction == "random":
             effects = [effect for lever in levers for effect in lever.anywhere()]
             return replace(in_direction([*effects, *slides], self.direction), scale=scale)
-        mesh = nominal.meshes[self.mesh] if self.mesh else None
-        read = (lever.own for lever in levers if mesh and lever.own.gear in (mesh.driver, mesh.driven))
-        gear = next(read, levers[0].own)
-        seen = self._azimuth(gear.gear, nominal)
-        if self.direction == "tooth_force" and mesh and mesh.gear(gear.gear).twist:
-            towards = seen - _force_azimuth(mesh, gear.gear)
-            seen = towards + _load_azimuth(mesh, gear, at, others[0])
-        azimuth = -seen if gear.backward and not isinstance(self.direction, At) else seen
-        effects = [effect for lever in levers for effect in lever.towards(azimuth)]
-        return Meaning(together([*effects, *slides]), least=0.0, scale=scale)
 
-    def _azimuth(self, gear: str, nominal: Nominal) -> float:
+        def pushed(mesh: Mesh | None) -> list[Effect]:
+            read = (lever.own for lever in levers if mesh and lever.own.gear in (mesh.driver, mesh.driven))
+            azimuth = self._azimuth_on_shaft(next(read, levers[0].own), mesh, (at, *others), nominal)
+            return [*(effect for lever in levers for effect in lever.towards(azimuth)), *slides]
+
+        mesh = nominal.meshes[self.mesh] if self.mesh else None
+        effect = together(pushed(None)) if mesh is None else self._by_load(pushed, mesh)
+        return Meaning(effect, least=0.0, scale=scale)
+
+    def _azimuth_on_shaft(self, gear: Carried, mesh: Mesh | None, bearings: Sequence[float], nominal: Nominal) -> float:
+        """Azimuth in which the shaft moves at a bearing [rad], in the frame of the shaft at 0.
+
+        Args:
+            gear: on the shaft, in the mesh.
+            mesh: with its working flanks loaded; None where the direction is an angle.
+            bearings: places of this bearing and of the shaft's other one, if there is one [mm].
+            nominal: of the scene.
+        """
+        if isinstance(self.direction, At) or mesh is None:
+            return self._azimuth(gear.gear, mesh, nominal)
+        seen = self._azimuth(gear.gear, mesh, nominal)
+        helical = self.direction == "tooth_force" and mesh.gear(gear.gear).twist
+        if helical or (self.direction == "reversing" and len(bearings) > 1):
+            seen = seen - _force_azimuth(mesh, gear.gear) + _load_azimuth(mesh, gear, *bearings[:2])
+        return -seen if gear.backward else seen
+
+    def _azimuth(self, gear: str, mesh: Mesh | None, nominal: Nominal) -> float:
         """Azimuth in which the axis of a gear moves [rad], in its frame at rest on its shaft."""
         if isinstance(self.direction, At):
             return self.direction.at.internal
-        mesh = nominal.mesh_of(gear, self.mesh)
+        mesh = mesh or nominal.mesh_of(gear, self.mesh)
         role = 0 if gear == mesh.driver else 1
         towards, opening = mesh.pair.mesh_azimuths[role], mesh.pair.opening_off_mesh[role]
         towards += mesh.azimuth if gear == mesh.driver else nominal.seat_azimuth(mesh.name)
