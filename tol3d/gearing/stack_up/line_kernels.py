@@ -69,7 +69,8 @@ class Row(NamedTuple):
         roll, mate_roll: of driver and driven at z = 0 [rad].
         lean: loss by tilted axes at the upper end of the face in the pitch point [mm].
         strain: of the driven gear less that of the driver.
-        up: by how much higher a point's foot lies on the mate than the point [mm], where a gap is read.
+        up: by how much higher a point's foot lies on the mate than the point [mm]: where a gap is read, or one gear
+            stands lower.
     """
 
     side: float
@@ -202,9 +203,9 @@ def take_on_lines(
         place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
         again[:] = True
         took[:] = 0.0
-        start, tangent = line.start, line.tangent
+        start, tangent, lower = line.start, line.tangent, 0.0
         if len(shifts):
-            start, tangent = start + shifts[row, 0], tangent + shifts[row, 1]
+            start, tangent, lower = start + shifts[row, 0], tangent + shifts[row, 1], -shifts[row, 2]
         shifted = ContactLine(
             tangent, start, line.pitch, line.half, line.twist, line.fall, line.pitch_roll, line.square, line.up
         )
@@ -214,7 +215,7 @@ def take_on_lines(
                     flank = flank_in(numbers, number, place - side * k, which[5], right)
                     mating = flank_in(mating_numbers, number, mate_place + side * k, which[6], right)
                     azimuth = angles[row] + (first[row] - side * k) * line.pitch
-                    roll, before, up = start - side * azimuth, took[k], 0.0
+                    roll, before, up = start - side * azimuth, took[k], lower
                     mate_roll = (tangent - driver.base * roll) / driven.base
                     if which[1] == BY_DRIVEN:
                         mate_roll -= before / driven.base
@@ -223,7 +224,7 @@ def take_on_lines(
                         roll += (open_by - before) / driver.base
                     else:  # the foot is not in the slice of its point
                         mate_roll -= line.square * open_by / driven.base
-                        up = side * line.up * open_by
+                        up = lower + side * line.up * open_by
                     own = Row(float(side), roll, mate_roll, lean[number, 0], lean[number, 1], up)
                     took[k] = most_on_line(driver, driven, shifted, flank, mating, own)
                     moved[k] = min(AGAIN * abs(took[k] - before), FAR)

@@ -31,6 +31,7 @@ class Stack(NominalMesh[Pair]):
         self.terms = tuple(own.opening for own in self.contributions if own.opening)
         self.teeth = tooth_pairs(model, mesh, reading)
         self.sideways = tuple(own.aside for own in self.contributions if own.aside)
+        self._screwed = tuple(own.screwed for own in self.contributions if own.screwed)
         self._apart = tuple(
             own.opening for own in self.contributions if own.opening and (own.along_line or own.strains)
         )  # shifts of axes, and parts that grow
@@ -144,11 +145,16 @@ class Stack(NominalMesh[Pair]):
             for term in terms:
                 own = deviations[:, self.model.component_slices[term.contributor.name]]
                 total += term.change(own if trial is None else own[trial], angles) / by
-        wider = np.zeros(len(driver_angle))
+        wider, higher = np.zeros(len(driver_angle)), np.zeros(len(driver_angle))
+        for term in self._screwed:
+            own = deviations[:, self.model.component_slices[term.contributor.name]]
+            turned = term.change(own if trial is None else own[trial], angles)
+            aside -= turned / self.cos
+            higher += turned / self.screwed("driven")
         for name, factor in self._widens:
             own = deviations[:, self.model.component_slices[name]][:, 0]
             wider += factor * (own if trial is None else own[trial])
-        return Moved(apart, aside, wider)
+        return Moved(apart, aside, wider, higher)
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
         """Loss by tilts at the upper end of the face, by side of the driver's touching flanks [mm], (rows,)."""

@@ -120,11 +120,13 @@ class Moved(NamedTuple):
         apart: how much further apart the axes stand [mm].
         aside: how much further the driven one stands in the world's +y [mm].
         wider: half of the angle by which the driver's teeth are wider [rad].
+        higher: how much higher the teeth of the driven one stand in the mesh, along the axes [mm].
     """
 
     apart: Array
     aside: Array
     wider: Array
+    higher: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,17 +198,18 @@ class ToothPairs:
     def _shifts(self, side: int, moved: Moved | None) -> Array:
         """Change by moved axes and flanks of a tooth's roll on the line of centres [rad] and of the tangent [mm].
 
-        (rows, 2); flanks of wider teeth meet as much earlier as they stand further out.
+        (rows, 2), of helical gears (rows, 3) with the driven teeth's shift along the axes [mm]; flanks of wider teeth meet as much earlier as they stand further out.
 
         Axes that stand dx further apart touch at a pressure angle that is dx/(a tan alpha_w) larger, along a tangent
         that is dx/sin(alpha_w) longer; a line of centres that turns by dy/a takes the path of contact along.
         """
         if moved is None:
             return np.zeros((0, 2))
-        apart, aside, wider = moved
+        apart, aside, wider, higher = moved
         alpha, distance = self.pair.working_pressure_angle, self.pair.centre_distance
         rolls = (apart / math.tan(alpha) + side * aside) / distance + wider
-        return np.stack([rolls, apart / math.sin(alpha)], axis=-1)
+        shifts = [rolls, apart / math.sin(alpha), *([higher] if self.driver.gear.helix_angle else [])]
+        return np.stack(shifts, axis=-1)
 
     @property
     def _tangent(self) -> float:
