@@ -68,6 +68,7 @@ class Row(NamedTuple):
         side: 1 if the driver's right flanks touch, -1 if its left ones do.
         roll, mate_roll: of driver and driven at z = 0 [rad].
         lean: loss by tilted axes at the upper end of the face in the pitch point [mm].
+        by_height: change of the driver's and of the driven's roll per height by tilted axes [rad/mm].
         strain: of the driven gear less that of the driver.
         up: by how much higher a point's foot lies on the mate than the point [mm]: where a gap is read, or one gear
             stands lower.
@@ -77,6 +78,7 @@ class Row(NamedTuple):
     roll: float
     mate_roll: float
     lean: float
+    by_height: tuple[float, float]
     strain: float
     up: float
 
@@ -109,11 +111,13 @@ def in_slice(
     """Loss by a pair in the slice at a height [mm]."""
     on = -row.side * line.twist * z
     roll, mate_roll = row.roll + on, row.mate_roll - on * driver.base / driven.base
-    flat = LineOfContact(line.tangent, line.start, line.pitch, 0.0)
+    along = driver.base * (roll - line.pitch_roll)
+    roll, mate_roll = roll + row.by_height[0] * z, mate_roll + row.by_height[1] * z
+    tangent = line.tangent + (driver.base * row.by_height[0] + driven.base * row.by_height[1]) * z
+    flat = LineOfContact(tangent, line.start, line.pitch, 0.0)
     loss = taken_by(driver, driven, flat, flank, mating, (roll, mate_roll), 0.0)
     loss += flank.helix / driver.face * z + mating.helix / driven.face * (z + row.up)
     if row.lean != 0.0:
-        along = driver.base * (roll - line.pitch_roll)
         loss += row.lean * (z / line.half - row.side * line.fall * along)
     if row.strain != 0.0:  # base pitches differ: a pair is the later the further it lies from the pitch point
         loss -= row.strain * driver.base * (row.roll - line.pitch_roll)
@@ -157,8 +161,9 @@ def most_on_line(
 ) -> float:
     """Loss by a pair in the slice that loses most [mm]."""
     per_roll = 1.0 / (row.side * line.twist)
-    first = (row.roll - driver.tip) * per_roll
-    last = (driven.tip - row.mate_roll) * driven.base / driver.base * per_roll
+    first = (row.roll - driver.tip) / (row.side * line.twist - row.by_height[0])
+    by_height = row.side * line.twist * driver.base / driven.base + row.by_height[1]
+    last = (driven.tip - row.mate_roll) / by_height
     lower, upper = face_of(driver, driven, row)
     low, high = max(lower, min(first, last)), min(upper, max(first, last))
     way = BEYOND * abs(per_roll)
@@ -225,7 +230,8 @@ def take_on_lines(
                     else:  # the foot is not in the slice of its point
                         mate_roll -= line.square * open_by / driven.base
                         up = lower + side * line.up * open_by
-                    own = Row(float(side), roll, mate_roll, lean[number, 0], lean[number, 1], up)
+                    by_height = (lean[number, 2], (lean[number, 3] - driver.base * lean[number, 2]) / driven.base)
+                    own = Row(float(side), roll, mate_roll, lean[number, 0], by_height, lean[number, 1], up)
                     took[k] = most_on_line(driver, driven, shifted, flank, mating, own)
                     moved[k] = min(AGAIN * abs(took[k] - before), FAR)
             most, looks = took.max(), False
