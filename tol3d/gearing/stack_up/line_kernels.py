@@ -228,8 +228,8 @@ def take_on_lines(
                         mate_roll -= open_by / driven.base
                         roll += (open_by - before) / driver.base
                     else:  # the foot is not in the slice of its point
-                        mate_roll -= line.square * open_by / driven.base
-                        up = lower + side * line.up * open_by
+                        mate_roll -= (before + line.square * (open_by - before)) / driven.base
+                        up = lower + side * line.up * (open_by - before)
                     by_height = (lean[number, 2], (lean[number, 3] - driver.base * lean[number, 2]) / driven.base)
                     own = Row(float(side), roll, mate_roll, lean[number, 0], by_height, lean[number, 1], up)
                     took[k] = most_on_line(driver, driven, shifted, flank, mating, own)
