@@ -31,7 +31,8 @@ from tol3d.numerics.compiled import QUICK, kernel, part
 
 Integers = NDArray[np.int64]
 
-BEYOND = 0.02  # rad of roll; through slices one and two of it beyond an end of a contact line goes a parabola
+BEYOND = 0.0025  # rad of roll; through slices one and two of it beyond an end of a contact line goes a parabola
+FURTHEST = 16.0  # times as far its top is looked for
 
 
 class ContactLine(NamedTuple):
@@ -144,15 +145,16 @@ def most_beyond(
 ) -> float:
     """Largest loss by a pair `way` [mm] beyond an end of its contact line, about; -inf where the face ends."""
     low, high = face_of(driver, driven, row)
+    room = (high if way > 0.0 else low) - end
     if not low <= end + 2.0 * way <= high:
-        way = 0.5 * ((high if way > 0.0 else low) - end)
+        way = 0.5 * room
     if way == 0.0:
         return -math.inf
     at_end = in_slice(driver, driven, line, flank, mating, row, end)
     near = in_slice(driver, driven, line, flank, mating, row, end + way)
     far = in_slice(driver, driven, line, flank, mating, row, end + 2.0 * way)
-    share = min(max(top(at_end, near, far), -1.0), 1.0)
-    return in_slice(driver, driven, line, flank, mating, row, end + (1.0 + share) * way)
+    steps = min(max(1.0 + top(at_end, near, far), 0.0), min(room / way, FURTHEST))
+    return in_slice(driver, driven, line, flank, mating, row, end + steps * way)
 
 
 @part
