@@ -119,9 +119,17 @@ class HelicalStack(SpurStack):
         return found
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
-        """With the strain of the driven gear less that of the driver, (rows, 2)."""
+        """As ToothPairs.taken has them, (rows, 4)."""
         strain = self._strain(self.mesh.driven, deviations) - self._strain(self.mesh.driver, deviations)
-        return {side: np.stack([lean, strain], axis=-1) for side, lean in super()._leans(deviations).items()}
+        leans = super()._leans(deviations)
+        alpha, half = self.pair.working_pressure_angle, self.pair.common_face / 2
+        apart = -(leans[1] + leans[-1]) / (2 * self.sin * half)
+        aside = (leans[1] - leans[-1]) / (2 * self.cos * half)
+        found = {}
+        for side, lean in leans.items():
+            rolls = (apart / math.tan(alpha) + side * aside) / self.pair.centre_distance
+            found[side] = np.stack([lean, strain, rolls, apart / math.sin(alpha)], axis=-1)
+        return found
 
     def lost(self, in_plane: Array, across: Array, driver_angle: Array | None = None) -> Array:
         """As of spur gears, on the contact lines at the driver's turns [rad] (rows,); averaged where None is given."""

@@ -31,7 +31,8 @@ from tol3d.numerics.compiled import QUICK, kernel, part
 
 Integers = NDArray[np.int64]
 
-BEYOND = 0.02  # rad of roll; through slices one and two of it beyond an end of a contact line goes a parabola
+BEYOND = 0.0025  # rad of roll; through slices one and two of it beyond an end of a contact line goes a parabola
+FURTHEST = 16.0  # times as far its top is looked for
 
 
 class ContactLine(NamedTuple):
@@ -68,14 +69,17 @@ class Row(NamedTuple):
         side: 1 if the driver's right flanks touch, -1 if its left ones do.
         roll, mate_roll: of driver and driven at z = 0 [rad].
         lean: loss by tilted axes at the upper end of the face in the pitch point [mm].
+        by_height: change of the driver's and of the driven's roll per height by tilted axes [rad/mm].
         strain: of the driven gear less that of the driver.
-        up: by how much higher a point's foot lies on the mate than the point [mm], where a gap is read.
+        up: by how much higher a point's foot lies on the mate than the point [mm]: where a gap is read, or one gear
+            stands lower.
     """
 
     side: float
     roll: float
     mate_roll: float
     lean: float
+    by_height: tuple[float, float]
     strain: float
     up: float
 
@@ -108,11 +112,13 @@ def in_slice(
     """Loss by a pair in the slice at a height [mm]."""
     on = -row.side * line.twist * z
     roll, mate_roll = row.roll + on, row.mate_roll - on * driver.base / driven.base
-    flat = LineOfContact(line.tangent, line.start, line.pitch, 0.0)
+    along = driver.base * (roll - line.pitch_roll)
+    roll, mate_roll = roll + row.by_height[0] * z, mate_roll + row.by_height[1] * z
+    tangent = line.tangent + (driver.base * row.by_height[0] + driven.base * row.by_height[1]) * z
+    flat = LineOfContact(tangent, line.start, line.pitch, 0.0)
     loss = taken_by(driver, driven, flat, flank, mating, (roll, mate_roll), 0.0)
     loss += flank.helix / driver.face * z + mating.helix / driven.face * (z + row.up)
     if row.lean != 0.0:
-        along = driver.base * (roll - line.pitch_roll)
         loss += row.lean * (z / line.half - row.side * line.fall * along)
     if row.strain != 0.0:  # base pitches differ: a pair is the later the further it lies from the pitch point
         loss -= row.strain * driver.base * (row.roll - line.pitch_roll)
@@ -139,15 +145,16 @@ def most_beyond(
 ) -> float:
     """Largest loss by a pair `way` [mm] beyond an end of its contact line, about; -inf where the face ends."""
     low, high = face_of(driver, driven, row)
+    room = (high if way > 0.0 else low) - end
     if not low <= end + 2.0 * way <= high:
-        way = 0.5 * ((high if way > 0.0 else low) - end)
+        way = 0.5 * room
     if way == 0.0:
         return -math.inf
     at_end = in_slice(driver, driven, line, flank, mating, row, end)
     near = in_slice(driver, driven, line, flank, mating, row, end + way)
     far = in_slice(driver, driven, line, flank, mating, row, end + 2.0 * way)
-    share = min(max(top(at_end, near, far), -1.0), 1.0)
-    return in_slice(driver, driven, line, flank, mating, row, end + (1.0 + share) * way)
+    steps = min(max(1.0 + top(at_end, near, far), 0.0), min(room / way, FURTHEST))
+    return in_slice(driver, driven, line, flank, mating, row, end + steps * way)
 
 
 @part
@@ -156,8 +163,9 @@ def most_on_line(
 ) -> float:
     """Loss by a pair in the slice that loses most [mm]."""
     per_roll = 1.0 / (row.side * line.twist)
-    first = (row.roll - driver.tip) * per_roll
-    last = (driven.tip - row.mate_roll) * driven.base / driver.base * per_roll
+    first = (row.roll - driver.tip) / (row.side * line.twist - row.by_height[0])
+    by_height = row.side * line.twist * driver.base / driven.base + row.by_height[1]
+    last = (driven.tip - row.mate_roll) / by_height
     lower, upper = face_of(driver, driven, row)
     low, high = max(lower, min(first, last)), min(upper, max(first, last))
     way = BEYOND * abs(per_roll)
@@ -202,9 +210,9 @@ def take_on_lines(
         place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
         again[:] = True
         took[:] = 0.0
-        start, tangent = line.start, line.tangent
+        start, tangent, lower = line.start, line.tangent, 0.0
         if len(shifts):
-            start, tangent = start + shifts[row, 0], tangent + shifts[row, 1]
+            start, tangent, lower = start + shifts[row, 0], tangent + shifts[row, 1], -shifts[row, 2]
         shifted = ContactLine(
             tangent, start, line.pitch, line.half, line.twist, line.fall, line.pitch_roll, line.square, line.up
         )
@@ -214,7 +222,7 @@ def take_on_lines(
                     flank = flank_in(numbers, number, place - side * k, which[5], right)
                     mating = flank_in(mating_numbers, number, mate_place + side * k, which[6], right)
                     azimuth = angles[row] + (first[row] - side * k) * line.pitch
-                    roll, before, up = start - side * azimuth, took[k], 0.0
+                    roll, before, up = start - side * azimuth, took[k], lower
                     mate_roll = (tangent - driver.base * roll) / driven.base
                     if which[1] == BY_DRIVEN:
                         mate_roll -= before / driven.base
@@ -222,9 +230,10 @@ def take_on_lines(
                         mate_roll -= open_by / driven.base
                         roll += (open_by - before) / driver.base
                     else:  # the foot is not in the slice of its point
-                        mate_roll -= line.square * open_by / driven.base
-                        up = side * line.up * open_by
-                    own = Row(float(side), roll, mate_roll, lean[number, 0], lean[number, 1], up)
+                        mate_roll -= (before + line.square * (open_by - before)) / driven.base
+                        up = lower + side * line.up * (open_by - before)
+                    by_height = (lean[number, 2], (lean[number, 3] - driver.base * lean[number, 2]) / driven.base)
+                    own = Row(float(side), roll, mate_roll, lean[number, 0], by_height, lean[number, 1], up)
                     took[k] = most_on_line(driver, driven, shifted, flank, mating, own)
                     moved[k] = min(AGAIN * abs(took[k] - before), FAR)
             most, looks = took.max(), False

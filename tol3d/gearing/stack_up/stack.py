@@ -7,6 +7,7 @@ and delta = 45 deg.
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +19,15 @@ from tol3d.gearing.stack_up.terms import Contribution, contribution, of_both_loa
 from tol3d.gearing.stack_up.tooth_pairs import Moved, ToothPairs, distinct, tooth_pairs
 from tol3d.numerics.arrays import Array
 
-Shifts = tuple[Sequence[Term], Sequence[Term]]
-"""Openings by shifts of axes and by parts that grow, and shifts aside."""
+
+class Shifts(NamedTuple):
+    """Terms of axes and flanks that move."""
+
+    apart: Sequence[Term]
+    """Openings by shifts of axes and by parts that grow."""
+    aside: Sequence[Term]
+    screwed: Sequence[Term]
+    """Of those aside, by teeth that move along the axis."""
 
 
 class Stack(NominalMesh[Pair]):
@@ -179,15 +187,20 @@ class Stack(NominalMesh[Pair]):
             return None
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         apart, aside = np.zeros(len(driver_angle)), np.zeros(len(driver_angle))
-        for total, terms, by in ((apart, shifts[0], 2 * self.sin), (aside, shifts[1], self.cos)):
+        for total, terms, by in ((apart, shifts.apart, 2 * self.sin), (aside, shifts.aside, self.cos)):
             for term in terms:
                 own = deviations[:, self.model.component_slices[term.contributor.name]]
                 total += term.change(own if trial is None else own[trial], angles) / by
-        wider = np.zeros(len(driver_angle))
+        wider, higher = np.zeros(len(driver_angle)), np.zeros(len(driver_angle))
+        for term in shifts.screwed:
+            own = deviations[:, self.model.component_slices[term.contributor.name]]
+            turned = term.change(own if trial is None else own[trial], angles)
+            aside -= turned / self.cos
+            higher += turned / self.screwed("driven")
         for name, factor in self._widens:
             own = deviations[:, self.model.component_slices[name]][:, 0]
             wider += factor * (own if trial is None else own[trial])
-        return Moved(apart, aside, wider)
+        return Moved(apart, aside, wider, higher)
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
         """Loss by tilts at the upper end of the face, by side of the driver's touching flanks [mm], (rows,)."""
@@ -230,5 +243,8 @@ class Stack(NominalMesh[Pair]):
 
 
 def _shifts(contributions: Sequence[Contribution]) -> Shifts:
-    apart = [own.opening for own in contributions if own.opening and (own.along_line or own.strains)]
-    return apart, [own.aside for own in contributions if own.aside]
+    return Shifts(
+        [own.opening for own in contributions if own.opening and (own.along_line or own.strains)],
+        [own.aside for own in contributions if own.aside],
+        [own.screwed for own in contributions if own.screwed],
+    )

@@ -36,6 +36,7 @@ class Contribution:
         opening: change of the normal backlash [mm].
         aside: shift [mm] of the middle of the driven gear's play, along the flanks' normals; positive turns the driven
             gear in the positive sense about its z.
+        screwed: of `aside`, the part by teeth of helical gears that move along the axis and so screw.
         strains: of parts that grow [1/K], by name.
         by_shifts, by_turns: of the opening, the part that is constant over the face, and the one that grows with the
             distance from the apex of a cone.
@@ -46,6 +47,7 @@ class Contribution:
 
     opening: Term | None = None
     aside: Term | None = None
+    screwed: Term | None = None
     strains: tuple[tuple[str, Term], ...] = ()
     by_shifts: Term | None = None
     by_turns: Term | None = None
@@ -179,9 +181,11 @@ def _along_direction(
     opening = Term(contributor, effect.factor * (mesh.across(role) * leaving + mesh.along(role) * z))
     delta, lengthwise = mesh.gear(role).pitch_angle, effect.factor * z
     left = (opening.coefficient - mesh.along(role) * lengthwise) / mesh.across(role)
+    screwed = mesh.screwed(role) * effect.factor * z
     return Contribution(
         opening=opening,
-        aside=Term(contributor, mesh.cos * effect.factor * turning + mesh.screwed(role) * effect.factor * z),
+        aside=Term(contributor, mesh.cos * effect.factor * turning + screwed),
+        screwed=Term(contributor, screwed) if screwed else None,
         by_shifts=opening,
         along_line=Term(contributor, _sense(role) * (math.cos(delta) * lengthwise - math.sin(delta) * left)),
     )
@@ -244,8 +248,9 @@ def _leaning(effect: AxisTilt, mesh: NominalMesh[SpurPair | InternalPair], contr
         return Contribution(opening)
     towards = math.cos(mesh.pair.mesh_azimuths[0 if role == "driver" else 1])  # the mesh, from the gear's axis
     radius = mesh.pair.working_radii[0 if role == "driver" else 1]
-    screwed = -mesh.screwed(role) * towards * radius  # its teeth there move along the axis against the turn about y
-    return Contribution(opening, aside=_turned(contributor, (x, y), per_y=screwed))
+    # its teeth there move along the axis against the turn about y
+    screwed = _turned(contributor, (x, y), per_y=-mesh.screwed(role) * towards * radius)
+    return Contribution(opening, aside=screwed, screwed=screwed)
 
 
 def _turns(effect: AxisTilt, mesh: NominalMesh[GearPair], contributor: Contributor, role: Role) -> tuple[Array, Array]:

@@ -120,11 +120,13 @@ class Moved(NamedTuple):
         apart: how much further apart the axes stand [mm].
         aside: how much further the driven one stands in the world's +y [mm].
         wider: half of the angle by which the driver's teeth are wider [rad].
+        higher: how much higher the teeth of the driven one stand in the mesh, along the axes [mm].
     """
 
     apart: Array
     aside: Array
     wider: Array
+    higher: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +164,8 @@ class ToothPairs:
             built: their trials.
             driver_angle: (rows,) [rad].
             lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm]; of helical gears
-                (trials, 2), with the strain of the driven gear less that of the driver.
+                (trials, 4): with the strain of the driven gear less that of the driver, and the changes per height of a
+                tooth's roll on the line of centres [rad/mm] and of the tangent, see _shifts.
             moved: axes and flanks off their nominal places; None if none is.
             turns: the gear that turns until the side touches; None reads its gap as the gears stand.
             apart: by which the side stands open before [mm], (rows,), where anything but the driven gear turns.
@@ -186,7 +189,7 @@ class ToothPairs:
             (
                 teeth,
                 driver_angle,
-                lean / np.array([cosine, 1.0]) if first.helix_angle else lean,
+                lean / np.array([cosine, 1.0, 1.0, 1.0]) if first.helix_angle else lean,
                 np.zeros(0) if apart is None else apart / cosine,
                 self._shifts(side, moved),
             ),
@@ -196,17 +199,18 @@ class ToothPairs:
     def _shifts(self, side: int, moved: Moved | None) -> Array:
         """Change by moved axes and flanks of a tooth's roll on the line of centres [rad] and of the tangent [mm].
 
-        (rows, 2); flanks of wider teeth meet as much earlier as they stand further out.
+        (rows, 2), of helical gears (rows, 3) with the driven teeth's shift along the axes [mm]; flanks of wider teeth meet as much earlier as they stand further out.
 
         Axes that stand dx further apart touch at a pressure angle that is dx/(a tan alpha_w) larger, along a tangent
         that is dx/sin(alpha_w) longer; a line of centres that turns by dy/a takes the path of contact along.
         """
         if moved is None:
             return np.zeros((0, 2))
-        apart, aside, wider = moved
+        apart, aside, wider, higher = moved
         alpha, distance = self.pair.working_pressure_angle, self.pair.centre_distance
         rolls = (apart / math.tan(alpha) + side * aside) / distance + wider
-        return np.stack([rolls, apart / math.sin(alpha)], axis=-1)
+        shifts = [rolls, apart / math.sin(alpha), *([higher] if self.driver.gear.helix_angle else [])]
+        return np.stack(shifts, axis=-1)
 
     @property
     def _tangent(self) -> float:
