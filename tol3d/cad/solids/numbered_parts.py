@@ -9,6 +9,7 @@ from typing import ClassVar
 from tol3d.cad.solids.built_shape import BuiltShape
 from tol3d.gears import SpurGear
 from tol3d.parts.details import Bore, Boss, Hole, Pin, Slot, Spigot
+from tol3d.parts.link_ends import Distal, Proximal
 
 Point = tuple[float, float, float]
 
@@ -84,6 +85,18 @@ class Cover(BuiltShape):
     holes: tuple[Hole, ...] = ()
     spigot: Spigot | None = None
     slots: tuple[Slot, ...] = ()
+
+
+@dataclass(frozen=True)
+class CastLink(BuiltShape):
+    """See tol3d.parts.cast_link."""
+
+    builder: ClassVar[str] = "tol3d.cad.solids.numbered_parts_cad:cast_link_of"
+
+    proximal: Proximal
+    distal: Distal
+    wall: float
+    body: float | None = None
 
 
 @dataclass(frozen=True)

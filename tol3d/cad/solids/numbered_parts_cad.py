@@ -8,6 +8,7 @@ from tol3d.cad.solids.numbered_parts import (
     BallSocket,
     Block,
     Bracket,
+    CastLink,
     Cover,
     Housing,
     Nut,
@@ -20,6 +21,7 @@ from tol3d.parts.ball_screw import ball_screw
 from tol3d.parts.ball_socket import ball_socket
 from tol3d.parts.block import block
 from tol3d.parts.bracket import bracket
+from tol3d.parts.cast_link import cast_link
 from tol3d.parts.cover import cover
 from tol3d.parts.ear import Ear
 from tol3d.parts.housing import housing
@@ -64,6 +66,11 @@ def housing_of(shape: Housing) -> NamedSolid:
 def cover_of(shape: Cover) -> NamedSolid:
     """The solid of a cover."""
     return cover(shape.length, shape.width, shape.thickness, shape.holes, shape.spigot, shape.slots)
+
+
+def cast_link_of(shape: CastLink) -> NamedSolid:
+    """The solid of a link."""
+    return cast_link(shape.proximal, shape.distal, shape.wall, shape.body)
 
 
 def rod_of(shape: Rod) -> NamedSolid:

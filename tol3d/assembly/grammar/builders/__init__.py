@@ -8,6 +8,7 @@ from tol3d.assembly.grammar.builders.builder_spec import BuilderSpec, OwnFileSpe
 from tol3d.assembly.grammar.builders.linkage_parts import (
     BallScrewSpec,
     BallSocketSpec,
+    CastLinkSpec,
     NutSpec,
     RodSpec,
     SphericalGearSpec,
@@ -21,6 +22,7 @@ BuilderUnion = Annotated[
     | BracketSpec
     | HousingSpec
     | CoverSpec
+    | CastLinkSpec
     | RodSpec
     | BallSocketSpec
     | NutSpec
@@ -38,6 +40,7 @@ __all__ = [
     "BracketSpec",
     "BuilderSpec",
     "BuilderUnion",
+    "CastLinkSpec",
     "CoverSpec",
     "HousingSpec",
     "NutSpec",

@@ -2,6 +2,8 @@
 
 A socket for a ball.
 
+A cast link of an arm.
+
 A nut with an ear in which a ball sits.
 
 A rod between two balls.
@@ -20,8 +22,10 @@ from typing_extensions import override
 
 from tol3d.assembly.grammar.builders.builder_spec import BuilderSpec
 from tol3d.assembly.grammar.feature_name import OwnName
-from tol3d.cad.solids.numbered_parts import BallScrew, BallSocket, Nut, Rod, SphericalGear, ThrustRing
+from tol3d.cad.solids.numbered_parts import BallScrew, BallSocket, CastLink, Nut, Rod, SphericalGear, ThrustRing
+from tol3d.parts.link_ends import Cylinder, Distal, Proximal
 from tol3d.scene.bases import Length
+from tol3d.scene.vector import Coordinate, Direction, Vector
 from tol3d.strict import Strict
 from tol3d.units import Of, Quantity
 
@@ -68,6 +72,76 @@ class BallSocketSpec(BuilderSpec):
     def shape(self) -> BallSocket:
         mouth = self.ball_diameter if self.mouth is None else self.mouth
         return BallSocket(self.ball_diameter.internal, mouth.internal, self.diameter.internal, self.height.internal)
+
+
+class RoundSpec(Strict):
+    """A pilot or a bore, half of its length on either side of its joint's frame."""
+
+    diameter: Length = Field(description="of the cylinder")
+    length: Length = Field(description="from end to end")
+
+    @property
+    def cylinder(self) -> Cylinder:
+        """By its numbers."""
+        return Cylinder(self.diameter.internal, self.length.internal)
+
+
+class ProximalSpec(Strict):
+    """The end of a link that lies on the joint before, a drum about z."""
+
+    level: Coordinate | None = Field(default=None, description="z of its seat, which looks to -z; default: 0 mm")
+    diameter: Length = Field(description="of the drum and its seat")
+    height: Length = Field(description="of the drum, along z")
+    pilot: RoundSpec | None = Field(default=None, description="that centres it, in the seat; default: none")
+    hole: Length | None = Field(default=None, description="diameter of an opening in the middle; default: none")
+
+
+class DistalSpec(Strict):
+    """The end of a link that holds the joint after, a drum about that joint's axis."""
+
+    at: Vector = Field(description="the joint's place, in the frame of the part")
+    axis: Direction = Field(description="of the joint, out of the drum")
+    diameter: Length = Field(description="of the drum")
+    depth: Length = Field(description="of the drum, from the joint's place backwards")
+    bore: RoundSpec | None = Field(default=None, description="of the joint; default: a flat flange")
+
+
+class CastLinkSpec(BuilderSpec):
+    """A hollow link between the frames of two joints, of which that of the one before is its part's origin."""
+
+    words: ClassVar[str] = "a cast link"
+
+    kind: Literal["cast_link"]
+    proximal: ProximalSpec = Field(description="the end on the joint before")
+    distal: DistalSpec = Field(description="the end that holds the joint after")
+    wall: Length = Field(description="thickness of all walls")
+    body: Length | None = Field(
+        default=None, description="diameter of the tube between both ends; default: as large as they let it be"
+    )
+
+    @property
+    @override
+    def shape(self) -> CastLink:
+        near, far = self.proximal, self.distal
+        x, y, z = (own.internal for own in far.at)
+        return CastLink(
+            Proximal(
+                near.diameter.internal,
+                near.height.internal,
+                0.0 if near.level is None else near.level.internal,
+                None if near.pilot is None else near.pilot.cylinder,
+                0.0 if near.hole is None else near.hole.internal,
+            ),
+            Distal(
+                (x, y, z),
+                far.axis,
+                far.diameter.internal,
+                far.depth.internal,
+                None if far.bore is None else far.bore.cylinder,
+            ),
+            self.wall.internal,
+            None if self.body is None else self.body.internal,
+        )
 
 
 class NutSpec(BuilderSpec):
