@@ -100,10 +100,17 @@ def _as_made(surface: Surface) -> Surface:
 
 @dataclass(frozen=True, eq=False)
 class Arrow:
-    """A direction that pictures show, such as that of gravity: a unit vector (3,), and where it acts (3,) [mm]."""
+    """A direction that pictures show, such as that of gravity or of an error.
+
+    Args:
+        direction: unit vector (3,).
+        place: where it acts, or from where it leads (3,) [mm].
+        length: [mm]; None: as suits the picture.
+    """
 
     direction: Array
     place: Array
+    length: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,6 +156,7 @@ class World:
         features: of its parts, by name.
         measured: lines of each measure that is read in this world, by the measure's name.
         magnify: factor of the deviations with which it is shown; None: the one that was asked for.
+        enlarged: how many times as long as they lie in it lines of errors are drawn.
     """
 
     name: str
@@ -161,6 +169,7 @@ class World:
     features: Mapping[str, Placed] = field(default_factory=dict)
     measured: Mapping[str, tuple[MeasuredLine, ...]] = field(default_factory=dict)
     magnify: float | None = None
+    enlarged: float = 1.0
 
 
 def built_body(

@@ -103,11 +103,13 @@ class Frame:
         caption: what it is, with its numbers.
         poses: world_from_part (4, 4), rotation and translation [mm], of the bodies that have moved, by name.
         marks: what is marked.
+        stop: name of the display's world whose parts stand so, in which measures are read; "" for none.
     """
 
     caption: str
     poses: Mapping[str, Array]
     marks: tuple[Mark, ...] = ()
+    stop: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +122,7 @@ class Motion:
         shots: the first one large, at the left, the others below each other at its right; one alone fills the picture.
         colours: of the marks, "#RRGGBB" by what they are.
         back: whether it goes back the way it came, so that it ends as it began.
+        in_worlds: True if its world is the first of the display, so that a page can show it there.
         notes: what the user should know.
     """
 
@@ -129,6 +132,7 @@ class Motion:
     colours: Mapping[str, str] = field(default_factory=dict)
     back: bool = False
     notes: tuple[str, ...] = ()
+    in_worlds: bool = False
 
     @property
     def played(self) -> tuple[int, ...]:

@@ -21,7 +21,7 @@ def ticks_of(low: float, high: float, unit: str, most: int) -> Ticks:
     [(1.0, '1′00″'), (1.5, '1′30″'), (2.0, '2′00″')]
     """
     seconds = angle_step(low, high, most + 2) if unit == "arcmin" else None
-    step = seconds / 60 if seconds else _even_step((high - low) / most)
+    step = seconds / 60 if seconds else even_step((high - low) / most)
     values = step * np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)
     if unit == "arcmin":
         return [(float(value), minutes_seconds(float(value))) for value in values]
@@ -30,8 +30,12 @@ def ticks_of(low: float, high: float, unit: str, most: int) -> Ticks:
     return [(float(own), f"{own + 0.0:.{digits}f}".replace("-", "−")) for own in np.round(values, digits)]
 
 
-def _even_step(least: float) -> float:
-    """The least step that is not shorter."""
+def even_step(least: float) -> float:
+    """The least of 1, 2, 2.5 and 5 times a power of ten that is not less.
+
+    >>> even_step(0.03), even_step(2.2), even_step(500.0)
+    (0.05, 2.5, 500.0)
+    """
     power = 10.0 ** math.floor(math.log10(least))
     return next(own for own in (power * step for step in STEPS) if own >= least * (1 - 1e-9))
 

@@ -3,7 +3,7 @@
 import ctypes.util
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -13,6 +13,7 @@ import pyvista as pv
 from tol3d.errors import InputError, unwritable
 from tol3d.report.body import World
 from tol3d.report.drawn_solids import add_title
+from tol3d.report.error_arrows import values_of, with_errors
 from tol3d.report.presenter import Display, Panel, Which, presenter_of, require_bodies
 from tol3d.report.whole import draw_whole
 from tol3d.study.runs.run import Run
@@ -20,6 +21,7 @@ from tol3d.study.runs.run import Run
 WINDOW_SIZE: Final = (1800, 1050)  # pixels
 TITLE_SIZE: Final = 13
 LEFT_SHARE: Final = 0.66  # of the window's width, the larger picture
+NO_VALUES: Final[Mapping[str, str]] = {}
 PICTURES: Final = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 
 
@@ -51,14 +53,22 @@ def view_run(
     """
     _refuse_other(screenshot)
     display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
-    return view_build(display, screenshot=screenshot, close_up=close_up)
+    values = values_of(run, which, display.label, run.found.measures)
+    return view_build(display, values, screenshot=screenshot, close_up=close_up)
 
 
-def view_build(display: Display, *, screenshot: Path | None = None, close_up: str | None = None) -> tuple[str, ...]:
+def view_build(
+    display: Display,
+    values: Mapping[str, str] = NO_VALUES,
+    *,
+    screenshot: Path | None = None,
+    close_up: str | None = None,
+) -> tuple[str, ...]:
     """Show a build in a window, or write a picture of it.
 
     Args:
         display: the build.
+        values: of measures, in words; errors that have one are drawn.
         screenshot, close_up: see view_run.
 
     Returns:
@@ -72,7 +82,10 @@ def view_build(display: Display, *, screenshot: Path | None = None, close_up: st
     if not view.panels:
         require_bodies(display)
     choose_window(needs_display=screenshot is None)
-    plotter = plot(view.panels or (partial(_whole, display, view.world),), off_screen=screenshot is not None)
+    plotter = plot(
+        view.panels or (partial(_whole, display.label, with_errors(view.world or display.worlds[0], values)),),
+        off_screen=screenshot is not None,
+    )
     try:
         if screenshot is None:
             plotter.show(title=f"tol3d · {display.label}")
@@ -90,9 +103,9 @@ def _refuse_other(screenshot: Path | None) -> None:
         raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
 
 
-def _whole(display: Display, world: World | None, plotter: pv.Plotter, width_by_height: float) -> None:
-    draw_whole(plotter, world or display.worlds[0], width_by_height)
-    add_title(plotter, display.label, TITLE_SIZE)
+def _whole(label: str, world: World, plotter: pv.Plotter, width_by_height: float) -> None:
+    draw_whole(plotter, world, width_by_height)
+    add_title(plotter, label, TITLE_SIZE)
 
 
 def choose_window(*, needs_display: bool) -> None:

@@ -150,7 +150,7 @@ def draw_whole(
     labels = [Label(own.name, own.colour, *named[own.name], part=True) for own in world.bodies]
     labels += [Label(name, CONTACT_COLOUR, point) for name, point in {**world.points, **marks}.items()]
     for name, shown in world.arrows.items():
-        length = ARROW_SHARE * frame.height
+        length = ARROW_SHARE * frame.height if shown.length is None else shown.length
         plotter.add_mesh(arrow(shown.place, shown.direction, length), color=GAP_COLOUR, ambient=0.6)
         labels.append(Label(name, GAP_COLOUR, shown.place + length * shown.direction))
     _look(plotter, eye, frame)

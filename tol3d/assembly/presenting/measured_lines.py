@@ -1,6 +1,6 @@
 """Lines along which measures of an assembly are read, as its parts stand in a build."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -8,10 +8,18 @@ import numpy as np
 from tol3d.assembly.model import Assembly, Measured
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import MeasuredLine
+from tol3d.report.ticks import even_step
 
 Frames = Mapping[str, Array]
 """Poses in the world (4, 4), by name."""
 
+
+ARROW: Final = 1 / 12
+"""Fraction of the size of what is shown: least length of the arrow of its largest error."""
+SHORTEST: Final = 1e-6
+"""mm; an error that is shorter is rounding."""
+LARGEST: Final = 1000.0
+"""Factor by which an error is drawn at most: of nominal parts it would be the chords of teeth that one sees."""
 
 LENGTHS: Final = ("gap", "distance", "virtual_clearance")
 """Readings of a length between features; of others the place of the last feature is shown."""
@@ -30,6 +38,20 @@ def measured_lines(assembly: Assembly, frames: Frames, poses: Frames) -> Mapping
     """
     found = {name: tuple(_lines(assembly, own, frames, poses)) for name, own in assembly.measures.items()}
     return {name: lines for name, lines in found.items() if lines}
+
+
+def arrow_factor(worlds: Iterable[Mapping[str, tuple[MeasuredLine, ...]]], size: float) -> float:
+    """An even factor by which lines of errors are drawn so long that the longest of them is seen, 1 at least.
+
+    Args:
+        worlds: lines of measures in each.
+        size: of what is shown [mm].
+    """
+    every = (line.points for lines in worlds for own in lines.values() for line in own if line.is_error)
+    longest = max((float(np.linalg.norm(points[-1] - points[0])) for points in every), default=0.0)
+    if longest < SHORTEST or longest >= ARROW * size:
+        return 1.0
+    return min(even_step(ARROW * size / longest), LARGEST)
 
 
 def _lines(assembly: Assembly, measured: Measured, frames: Frames, poses: Frames) -> Iterator[MeasuredLine]:

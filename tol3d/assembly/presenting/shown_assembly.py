@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.posed import PosedSystem
-from tol3d.assembly.presenting.measured_lines import measured_lines
+from tol3d.assembly.presenting.measured_lines import arrow_factor, measured_lines
 from tol3d.assembly.presenting.symbols import (
     joined_symbols,
     labels,
@@ -25,7 +26,7 @@ from tol3d.errors import InputError, RunError
 from tol3d.numerics.arrays import Array
 from tol3d.report import body
 from tol3d.report.body import Body, MeasuredLine, World, built_body
-from tol3d.report.motion import Frame, Motion, Shot, around, corner
+from tol3d.report.motion import Frame, Look, Motion, Shot, around, corner
 from tol3d.report.presenter import View, Which
 from tol3d.study.results.replaying import Replay, build_of, enlarged
 from tol3d.study.runs.run import Run
@@ -39,6 +40,8 @@ DEFLECTION: Final = 0.05
 """mm; deflection of triangles from the faces of solids: the same in all trials, as meshes are built once."""
 OPACITY: Final = 0.3
 """Opacity of solids, so that their features and their inside are visible."""
+ALIKE: Final = 1e-6
+"""mm, and in rotations; places that differ by less are one."""
 FRAMES: Final = 25
 """Frames of a path by default."""
 HALVINGS: Final = 10
@@ -64,6 +67,15 @@ class Placed:
         """The same in another world, by a pose (4, 4)."""
         frames = {name: into @ frame for name, frame in self.frames.items()}
         return Placed(self.assembly, frames, {name: into @ pose for name, pose in self.poses.items()})
+
+    def stands_as(self, other: "Placed") -> bool:
+        """True if all parts stand as they do in another, to a nanometre."""
+        return all(np.allclose(own, other.poses[name], rtol=0.0, atol=ALIKE) for name, own in self.poses.items())
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box about its features [mm]."""
+        return float(np.linalg.norm(np.ptp([frame[:3, 3] for frame in self.frames.values()], axis=0)))
 
     @property
     def has_solids(self) -> bool:
@@ -111,7 +123,18 @@ class ShownAssembly:
         system = self._posed
         if system is None:
             return (self._world("assembly", self.placed),)
-        return tuple(self._world(pose or "assembly", own) for pose, own in self._in(system.pose_names))
+        return tuple(self._world(pose or "assembly", own) for pose, own in self._in_poses)
+
+    @cached_property
+    def _in_poses(self) -> Sequence[tuple[str, Placed]]:
+        """The build in every pose of its scene in which it is built."""
+        assert self._posed is not None
+        return self._in(self._posed.pose_names)
+
+    @cached_property
+    def _enlarged(self) -> float:
+        placed = [own for _, own in self._in_poses] if self._posed is not None else [self.placed]
+        return arrow_factor([own.measured for own in placed], self.placed.size)
 
     def _world(self, name: str, placed: Placed) -> World:
         return World(
@@ -122,6 +145,7 @@ class ShownAssembly:
             features=placed.features,
             measured=placed.measured,
             magnify=self.magnify,
+            enlarged=self._enlarged,
         )
 
     @property
@@ -156,22 +180,14 @@ class ShownAssembly:
         placed = self._in(list(dict.fromkeys(chosen)))
         if not placed:
             raise InputError(f"--motion: {self.label} cannot be assembled anywhere on {name}")
-        first = placed[0][1]
-        world = self._world(name, first)
-        solid = {part.name for part in first.assembly.parts if part.solid is not None}
-        shown = []
+        world, shown = self.worlds[0], []
         for pose, own in placed:
-            moved = {
-                part: there if part in solid else there @ np.linalg.inv(first.poses[part])
-                for part, there in own.poses.items()
-            }
-            shown.append(Frame(f"{name}: {pose.rpartition('|')[2]} of {len(path) - 1}", moved))
-        points = np.concatenate([np.array([frame[:3, 3] for frame in own.frames.values()]) for _, own in placed])
-        corners = np.concatenate([body.mesh[0] for body in world.bodies])
-        middle = (points.min(axis=0) + points.max(axis=0)) / 2
-        look = around(np.concatenate([points, corners]), middle, *corner(np.array(world.up)))
+            words = f"{name}: {pose.rpartition('|')[2]} of {len(path) - 1}"
+            stop = next((stated for stated, there in self._in_poses if there.stands_as(own)), "")
+            shown.append(Frame(words, moved_from(self._in_poses[0][1], own, world), stop=stop))
+        look = seen_whole(world, [frame.poses for frame in shown])
         notes = () if len(placed) == len(set(chosen)) else ("it cannot be assembled in all poses of the path",)
-        return Motion(world, tuple(shown), (Shot(name, (look,)),), back=True, notes=notes)
+        return Motion(world, tuple(shown), (Shot(name, (look,)),), back=True, notes=notes, in_worlds=True)
 
     def view(self, close_up: str | None) -> View:
         """The world, its parts named."""
@@ -234,12 +250,45 @@ def placed_by(seen: Replay) -> Placed | None:
 
 def placed_in(assembly: Assembly, deviations: Array) -> Placed | None:
     """An assembly in one trial (1, width); None where a move fails."""
+    return placed_each(assembly, deviations)[0]
+
+
+def placed_each(assembly: Assembly, deviations: Array) -> Sequence[Placed | None]:
+    """An assembly in each of some trials (trials, width); None where a move fails."""
     frames = placing.features_placed(assembly, deviations)
     poses = placing.placed(assembly, deviations)
-    if any(np.isnan(own).any() for own in (*frames.values(), *poses.values())):
-        return None
-    here, there = ({name: own[0] for name, own in found.items()} for found in (frames, poses))
-    return Placed(assembly, here, there)
+    failed = np.any([np.isnan(own).any(axis=(1, 2)) for own in (*frames.values(), *poses.values())], axis=0)
+    found = list[Placed | None]()
+    for k, fails in enumerate(failed):
+        here, there = ({name: own[k] for name, own in every.items()} for every in (frames, poses))
+        found.append(None if fails else Placed(assembly, here, there))
+    return found
+
+
+def moved_from(first: Placed, own: Placed, world: World) -> Mapping[str, Array]:
+    """Poses of bodies (4, 4) in a world, by name, where their parts stand otherwise.
+
+    Args:
+        first: the parts as the world has them.
+        own: as they stand.
+        world: the world.
+    """
+    return {
+        part.name: own.poses[part.name] @ np.linalg.inv(first.poses[part.name]) @ part.world_from_part
+        for part in world.bodies
+    }
+
+
+def seen_whole(world: World, frames: Sequence[Mapping[str, Array]]) -> Look:
+    """A look from a corner at all bodies of a world, by name, in all poses (4, 4) that they have."""
+    points = []
+    for part in world.bodies:
+        low, high = part.mesh[0].min(axis=0), part.mesh[0].max(axis=0)
+        corners = np.array([[*place, 1.0] for place in product(*zip(low, high, strict=True))])
+        moved = np.array([poses[part.name] for poses in frames]) @ np.linalg.inv(part.world_from_part)
+        points.append((corners @ moved.transpose(0, 2, 1))[..., :3].reshape(-1, 3))
+    every = np.concatenate(points)
+    return around(every, (every.min(axis=0) + every.max(axis=0)) / 2, *corner(np.array(world.up)))
 
 
 def bodies(placed: Placed, colours: Sequence[str] = COLOURS) -> tuple[Body, ...]:

@@ -13,6 +13,7 @@ from tol3d.assembly.clearances.prepared import reader_of
 from tol3d.assembly.posed import has_loops
 from tol3d.assembly.system import AssemblySystem, ClearanceSystem, assembly_system
 from tol3d.assembly.zones import laws_told
+from tol3d.gearing.machine.chain import Chain, Joint
 from tol3d.gearing.machine.closed_form import closed_form, with_joints
 from tol3d.gearing.machine.grammar.open_chain import OpenChainSpec
 from tol3d.gearing.machine.joined import Joined, is_hidden
@@ -167,6 +168,23 @@ class MachineSystem(Joined):
             for spec in self._chains.values()
             for joint in spec.joints
         )
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """The joints of its chains, in the first pose."""
+        moves = self.drawn.assembly.moves
+        return tuple(joint for move in moves if isinstance(move, Chain) for joint in move.joints)
+
+    @property
+    def inputs(self) -> Mapping[str, Sequence[float]]:
+        """Inputs of these joints [rad] in every pose of a chain; a chain that lacks it stands in its first."""
+        chains = self._chains.values()
+        specs = {joint: spec for spec in chains for joint in spec.joints}
+        found = dict[str, Sequence[float]]()
+        for pose in dict.fromkeys(pose for spec in chains for pose in spec.poses):
+            at = [specs[own.name].poses.get(pose, next(iter(specs[own.name].poses.values()))) for own in self.joints]
+            found[pose] = [its[own.name].internal for own, its in zip(self.joints, at, strict=True)]
+        return found
 
     def standing(self, values: Mapping[str, float], measures: Sequence[str]) -> "MachineSystem":
         """See Posable: trains turn the joints by their play where these stand; only parts are measured."""

@@ -3,7 +3,6 @@
 import base64
 import gzip
 import json
-import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence, Set
 from io import BytesIO
@@ -19,15 +18,14 @@ from tol3d.errors import Tol3dError
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Surface
 from tol3d.report.drawn_solids import poly_data
+from tol3d.report.error_arrows import values_of
 from tol3d.report.heading import shown_measures
 from tol3d.report.html.blocks import Markup, tag
 from tol3d.report.html.view_model import ViewModel
-from tol3d.report.number import measured_text
 from tol3d.report.presenter import Display, Presenter, Which
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.view import view_run
 from tol3d.study.runs.run import Run
-from tol3d.study.system.outcome import value_column
 
 FACTORS: Final = (1.0, 10.0, 100.0)
 """Magnifications of a trial's deviations; a build that does not allow one says so."""
@@ -40,7 +38,6 @@ FEWEST_FACETS: Final = 1000
 MOST_TRIES: Final = 4
 LEAST_LEFT: Final = 0.02
 """Share of a mesh's triangles that is left at least."""
-TRIAL: Final = re.compile(r"trial-(\d+)")
 STILL_WIDTH, STILL_QUALITY = 1100, 80
 
 
@@ -58,7 +55,9 @@ def view_3d(run: Run, presenter: Presenter, trials: Sequence[int] = ()) -> Marku
         try:
             displays = _displays(run, presenter, which)
             first = next(displays)
-            model.add(_called(which), chain([first], displays), _values(run, which, first[1].label))
+            label, lines = first[1].label, (own.measured for own in first[1].worlds)
+            values = values_of(run, which, label, dict.fromkeys(name for own in lines for name in own))
+            model.add(_called(which), chain([first], displays), values)
         except Tol3dError as error:
             if not model.builds:
                 return tag("p", f"no 3D view: {error}", class_="note")
@@ -85,26 +84,9 @@ def _packed(model: ViewModel) -> bytes:
 
 def _measured(run: Run, which: Which, label: str) -> str:
     """A build with the values of the measures that are shown."""
-    told = [f"{name} {own}" for name, own in _values(run, which, label).items()]
+    values = values_of(run, which, label, shown_measures(shown_run(run.found).measures))
+    told = [f"{name} {own}" for name, own in values.items()]
     return f"{label}: {', '.join(told)}" if told else label
-
-
-def _values(run: Run, which: Which, label: str) -> dict[str, str]:
-    """Values of the measures that are shown, of the best method there is, in words."""
-    shown = shown_run(run.found).measures
-    trial = TRIAL.fullmatch(label)
-    values = dict[str, float | None]()
-    for name in shown_measures(shown):
-        measure = shown[name]
-        if measure.take == "curve":
-            continue
-        if which == "nominal":
-            values[name] = measure.nominal.value(measure.best_method)
-        elif trial:
-            column = value_column(measure.best_method, name)
-            per = 1.0 if run.found.measures[name].unit == measure.unit else 1e-3
-            values[name] = per * float(run.columns(column)[column][int(trial[1])])
-    return {name: measured_text(own, shown[name].unit) for name, own in values.items() if own is not None}
 
 
 def _called(which: Which) -> str:

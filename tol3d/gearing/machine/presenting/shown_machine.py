@@ -7,15 +7,18 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.assembly.presenting.measured_lines import arrow_factor
 from tol3d.assembly.presenting.shown_assembly import RIGID, Placed, bodies, placed_in
 from tol3d.assembly.presenting.symbols import unnamed
 from tol3d.errors import InputError, RunError
+from tol3d.gearing.machine.joined import HIDDEN
 from tol3d.gearing.machine.methods import WorstMeasure
+from tol3d.gearing.machine.presenting.arm_motion import POSES, Arm, arm_motion
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.presenting.gear_display import GearDisplay
 from tol3d.gearing.shown.display import require_factor, seated_build
 from tol3d.numerics.arrays import Array
-from tol3d.report.body import World
+from tol3d.report.body import MeasuredLine, World
 from tol3d.report.motion import Motion
 from tol3d.report.presenter import View
 from tol3d.study.results.replaying import Replay
@@ -36,6 +39,7 @@ class ShownMachine:
         placed: the parts around them in the first pose, in their own world.
         poses: the parts in every pose, where there are some.
         magnify: factor of the deviations of the parts in them.
+        trials: the build, without magnification.
     """
 
     gears: GearDisplay
@@ -43,6 +47,7 @@ class ShownMachine:
     placed: Placed
     poses: Mapping[str, Placed] = field(default_factory=dict)
     magnify: float = 1.0
+    trials: Trials | None = None
 
     @property
     def label(self) -> str:
@@ -64,7 +69,7 @@ class ShownMachine:
     @cached_property
     def worlds(self) -> tuple[World, ...]:
         """The parts in every pose; then the worlds of the gears, each with the parts around them."""
-        posed = (_posed(self.system, pose, own, self.magnify) for pose, own in self.poses.items())
+        posed = _posed(self.system, self.poses, self.magnify)
         return (*posed, *(self._with_parts(world) for world in self.gears.worlds))
 
     def _with_parts(self, world: World) -> World:
@@ -96,10 +101,14 @@ class ShownMachine:
     @property
     def motions(self) -> tuple[str, ...]:
         """See `tol3d.report.motion.Movable`."""
-        return self.gears.motions
+        return (*([POSES] if self.poses and self.system.joints else []), *self.gears.motions)
 
     def motion(self, name: str, frames: int | None) -> Motion:
-        """The gears move, the parts around them are left out; see `tol3d.report.motion.Movable`."""
+        """An arm moves, or the gears do, without the parts around them; see `tol3d.report.motion.Movable`."""
+        if name == POSES:
+            assert self.trials is not None
+            first = next(iter(self.poses.values()))
+            return arm_motion(Arm(self.system, self.trials, self.magnify, self.worlds[0], first), frames)
         return self.gears.motion(name, frames)
 
     def view(self, close_up: str | None) -> View:
@@ -134,22 +143,33 @@ class ShownParts:
         return View()
 
 
-def _posed(system: MachineSystem, pose: str, placed: Placed, magnify: float) -> World:
-    """The parts in a pose; a largest error is read there as its size in that pose."""
-    measured = dict(placed.measured)
+def _posed(system: MachineSystem, poses: Mapping[str, Placed], magnify: float) -> tuple[World, ...]:
+    """The parts in poses; a largest error is read in each as its size in that pose."""
+    lines = {pose: _lines(system, pose, placed) for pose, placed in poses.items()}
+    factor = arrow_factor(lines.values(), next(iter(poses.values())).size) if poses else 1.0
+    return tuple(
+        World(
+            pose,
+            bodies(placed, COLOURS),
+            points=placed.points,
+            up=system.up,
+            features=placed.features,
+            measured=lines[pose],
+            magnify=magnify,
+            enlarged=factor,
+        )
+        for pose, placed in poses.items()
+    )
+
+
+def _lines(system: MachineSystem, pose: str, placed: Placed) -> Mapping[str, tuple[MeasuredLine, ...]]:
+    """Lines of the measures of a scene that are read in a pose; of errors on any flanks parts do not stand so."""
+    found = dict(placed.measured)
     for measure in system.measures:
         own = dict(measure.sizes).get(pose) if isinstance(measure, WorstMeasure) else None
-        if own in measured:
-            measured[measure.name] = measured[own]
-    return World(
-        pose,
-        bodies(placed, COLOURS),
-        points=placed.points,
-        up=system.up,
-        features=placed.features,
-        measured=measured,
-        magnify=magnify,
-    )
+        if own in found and not measure.any_flank:
+            found[measure.name] = found[own]
+    return {name: own for name, own in found.items() if not name.startswith(HIDDEN)}
 
 
 def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine | ShownParts:
@@ -165,7 +185,7 @@ def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine | ShownPa
         parts = _in_poses(seen, label, magnify)[system.alone]
         notes = (f"deviations magnified {magnify:g} times",) if magnify != 1.0 else ()
         rigid = (RIGID,) if parts.has_solids else ()
-        return ShownParts(label, (*notes, *rigid), _posed(system, system.alone, parts, magnify))
+        return ShownParts(label, (*notes, *rigid), *_posed(system, {system.alone: parts}, magnify))
     build = seated_build(seen, label, magnify=magnify)
     trials = seen.trials if build.magnify == 1.0 else magnified(system, seen.trials, build.magnify)
     if "" in system.poses:
@@ -175,7 +195,9 @@ def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine | ShownPa
         return ShownMachine(GearDisplay(build), system, placed)
     poses = _in_poses(seen, label, magnify)
     around = placed_in(system.drawn.assembly, system.in_pose(trials.part(0, 1), next(iter(poses))))
-    return ShownMachine(GearDisplay(build), system, around or next(iter(poses.values())), poses, magnify)
+    return ShownMachine(
+        GearDisplay(build), system, around or next(iter(poses.values())), poses, magnify, seen.trials.part(0, 1)
+    )
 
 
 def _in_poses(seen: Replay, label: str, magnify: float) -> Mapping[str, Placed]:
