@@ -149,6 +149,7 @@ class World:
         features: of its parts, by name.
         measured: lines of each measure that is read in this world, by the measure's name.
         magnify: factor of the deviations with which it is shown; None: the one that was asked for.
+        within: bodies that pictures show within the others under a common name, and files leave out, by that name.
     """
 
     name: str
@@ -161,6 +162,7 @@ class World:
     features: Mapping[str, Placed] = field(default_factory=dict)
     measured: Mapping[str, tuple[MeasuredLine, ...]] = field(default_factory=dict)
     magnify: float | None = None
+    within: Mapping[str, tuple[Body, ...]] = field(default_factory=dict)
 
 
 def built_body(

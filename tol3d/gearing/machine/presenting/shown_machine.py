@@ -11,6 +11,7 @@ from tol3d.assembly.presenting.shown_assembly import RIGID, Placed, bodies, plac
 from tol3d.assembly.presenting.symbols import unnamed
 from tol3d.errors import InputError, RunError
 from tol3d.gearing.machine.methods import WorstMeasure
+from tol3d.gearing.machine.presenting.trains_in_joints import TrainInJoint, trains_in_joints
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.presenting.gear_display import GearDisplay
 from tol3d.gearing.shown.display import require_factor, seated_build
@@ -36,6 +37,7 @@ class ShownMachine:
         placed: the parts around them in the first pose, in their own world.
         poses: the parts in every pose, where there are some.
         magnify: factor of the deviations of the parts in them.
+        trains: that turn joints, as they are shown in poses.
     """
 
     gears: GearDisplay
@@ -43,6 +45,7 @@ class ShownMachine:
     placed: Placed
     poses: Mapping[str, Placed] = field(default_factory=dict)
     magnify: float = 1.0
+    trains: tuple[TrainInJoint, ...] = ()
 
     @property
     def label(self) -> str:
@@ -64,7 +67,13 @@ class ShownMachine:
     @cached_property
     def worlds(self) -> tuple[World, ...]:
         """The parts in every pose; then the worlds of the gears, each with the parts around them."""
-        posed = (_posed(self.system, pose, own, self.magnify) for pose, own in self.poses.items())
+        posed = (
+            replace(
+                _posed(self.system, pose, own, self.magnify),
+                within={train.name: train.placed(own) for train in self.trains},
+            )
+            for pose, own in self.poses.items()
+        )
         return (*posed, *(self._with_parts(world) for world in self.gears.worlds))
 
     def _with_parts(self, world: World) -> World:
@@ -175,7 +184,8 @@ def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine | ShownPa
         return ShownMachine(GearDisplay(build), system, placed)
     poses = _in_poses(seen, label, magnify)
     around = placed_in(system.drawn.assembly, system.in_pose(trials.part(0, 1), next(iter(poses))))
-    return ShownMachine(GearDisplay(build), system, around or next(iter(poses.values())), poses, magnify)
+    trains = trains_in_joints(seen.simulation)
+    return ShownMachine(GearDisplay(build), system, around or next(iter(poses.values())), poses, magnify, trains)
 
 
 def _in_poses(seen: Replay, label: str, magnify: float) -> Mapping[str, Placed]:
