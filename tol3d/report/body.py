@@ -157,6 +157,7 @@ class World:
         measured: lines of each measure that is read in this world, by the measure's name.
         magnify: factor of the deviations with which it is shown; None: the one that was asked for.
         enlarged: how many times as long as they lie in it lines of errors are drawn.
+        within: bodies that pictures show within the others under a common name, and files leave out, by that name.
     """
 
     name: str
@@ -170,6 +171,7 @@ class World:
     measured: Mapping[str, tuple[MeasuredLine, ...]] = field(default_factory=dict)
     magnify: float | None = None
     enlarged: float = 1.0
+    within: Mapping[str, tuple[Body, ...]] = field(default_factory=dict)
 
 
 def built_body(

@@ -140,7 +140,7 @@ def draw_whole(
         marks: points that are named besides those of the world, (3,) [mm].
     """
     set_background(plotter)
-    for body in world.bodies:
+    for body in (*world.bodies, *(own for bodies in world.within.values() for own in bodies)):
         add_body(plotter, body)
     if any(body.opacity < 1.0 for body in world.bodies):  # else faces hide each other in the order of drawing
         plotter.renderer.SetUseDepthPeeling(True)
@@ -148,6 +148,10 @@ def draw_whole(
     eye, named = _best_eye(world, width_by_height)
     frame = _frame(world, eye, width_by_height)
     labels = [Label(own.name, own.colour, *named[own.name], part=True) for own in world.bodies]
+    for name, bodies in world.within.items():
+        corners = np.concatenate([body.mesh[0] for body in bodies])
+        middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+        labels.append(Label(name, bodies[0].colour, middle, part=True))
     labels += [Label(name, CONTACT_COLOUR, point) for name, point in {**world.points, **marks}.items()]
     for name, shown in world.arrows.items():
         length = ARROW_SHARE * frame.height if shown.length is None else shown.length

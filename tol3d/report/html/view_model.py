@@ -120,9 +120,10 @@ class ViewModel:
             world = _world_of(display, shown.name if shown else self.wanted)
             if world is None:
                 continue
-            pieces = [(body, piece) for body in world.bodies for piece in body.pieces]
+            pieces = [(body.name, piece) for body in world.bodies for piece in body.pieces]
+            pieces += [(name, body) for name, bodies in world.within.items() for body in bodies]
             placed = [self._place(piece) for _, piece in pieces]
-            shown, parts = shown or world, parts or tuple(_part(body, piece) for body, piece in pieces)
+            shown, parts = shown or world, parts or tuple(_part(name, piece) for name, piece in pieces)
             poses = tuple(_pose(piece, on) for (_, piece), (_, on) in zip(pieces, placed, strict=True))
             names = {label: _place(place) for label, place in {**world.points, **world.marks}.items()}
             features = {label: _place(own.frame[:3, 3]) for label, own in world.features.items()}
@@ -229,8 +230,8 @@ def _surface(body: Body) -> Surface:
     return np.vstack([vertices, more]), np.vstack([triangles, further + len(vertices)])
 
 
-def _part(body: Body, piece: Body) -> ShownPart:
-    """A piece of a body; its features have its last triangles."""
+def _part(part: str, piece: Body) -> ShownPart:
+    """A piece of a part; its features have its last triangles."""
     found, end = list[tuple[str, int, int]](), 0
     if piece.features is not None:
         counts = piece.features()
@@ -238,7 +239,7 @@ def _part(body: Body, piece: Body) -> ShownPart:
         for name, count in counts.items():
             found.append((name, end, count))
             end += count
-    return ShownPart(piece.name, body.name, piece.colour, piece.opacity, tuple(found))
+    return ShownPart(piece.name, part, piece.colour, piece.opacity, tuple(found))
 
 
 def _place(numbers: Array) -> list[float]:

@@ -14,6 +14,7 @@ from tol3d.errors import InputError, RunError
 from tol3d.gearing.machine.joined import HIDDEN
 from tol3d.gearing.machine.methods import WorstMeasure
 from tol3d.gearing.machine.presenting.arm_motion import POSES, Arm, arm_motion
+from tol3d.gearing.machine.presenting.trains_in_joints import TrainInJoint, trains_in_joints
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.presenting.gear_display import GearDisplay
 from tol3d.gearing.shown.display import require_factor, seated_build
@@ -40,6 +41,7 @@ class ShownMachine:
         poses: the parts in every pose, where there are some.
         magnify: factor of the deviations of the parts in them.
         trials: the build, without magnification.
+        trains: that turn joints, as they are shown in poses.
     """
 
     gears: GearDisplay
@@ -48,6 +50,7 @@ class ShownMachine:
     poses: Mapping[str, Placed] = field(default_factory=dict)
     magnify: float = 1.0
     trials: Trials | None = None
+    trains: tuple[TrainInJoint, ...] = ()
 
     @property
     def label(self) -> str:
@@ -69,7 +72,10 @@ class ShownMachine:
     @cached_property
     def worlds(self) -> tuple[World, ...]:
         """The parts in every pose; then the worlds of the gears, each with the parts around them."""
-        posed = _posed(self.system, self.poses, self.magnify)
+        posed = (
+            replace(world, within={train.name: train.placed(own) for train in self.trains})
+            for world, own in zip(_posed(self.system, self.poses, self.magnify), self.poses.values(), strict=True)
+        )
         return (*posed, *(self._with_parts(world) for world in self.gears.worlds))
 
     def _with_parts(self, world: World) -> World:
@@ -196,7 +202,13 @@ def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine | ShownPa
     poses = _in_poses(seen, label, magnify)
     around = placed_in(system.drawn.assembly, system.in_pose(trials.part(0, 1), next(iter(poses))))
     return ShownMachine(
-        GearDisplay(build), system, around or next(iter(poses.values())), poses, magnify, seen.trials.part(0, 1)
+        GearDisplay(build),
+        system,
+        around or next(iter(poses.values())),
+        poses,
+        magnify,
+        seen.trials.part(0, 1),
+        trains_in_joints(seen.simulation),
     )
 
 

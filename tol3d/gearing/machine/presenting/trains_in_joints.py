@@ -1,0 +1,137 @@
+"""Trains of an arm as pictures show them within its links: each behind the joint that it turns, undeviated.
+
+A scene does not tell where in a link a train lies: it is drawn on the axis of its joint, behind the bore, its input at
+the back and, where shafts cross, towards the joint before.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from os.path import commonprefix
+from typing import Final
+
+import numpy as np
+
+from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.presenting.shown_assembly import Placed
+from tol3d.cad.solids import display_mesh
+from tol3d.gearing.machine.grammar.open_chain import OpenChainSpec
+from tol3d.gearing.machine.system import MachineSystem
+from tol3d.gearing.presenting.shown_train import shown_build
+from tol3d.gearing.shown.display import seated_build
+from tol3d.numerics.arrays import Array
+from tol3d.report.body import Body, Surface
+from tol3d.study.results.replaying import replayed
+from tol3d.study.system.stated import nominal_build
+from tol3d.study.trials.simulation import Simulation
+
+COARSE: Final = 0.2
+"""mm; deflection of triangles from the faces of gears that are a hundredth of the picture."""
+ONE_LINE: Final = 1e-9
+"""Sine of an angle, and mm; shafts that cross by less are parallel."""
+
+
+@dataclass(frozen=True, eq=False)
+class TrainInJoint:
+    """A train with its parts about its output at the origin, which turns about z.
+
+    Args:
+        name: the train's.
+        axis: the feature of the link before that its joint turns about.
+        bodies: of one colour each, in that frame.
+        towards: to its input, square to z (3,) [mm]; near 0 where that lies on z.
+        behind: z of its foremost point [mm].
+    """
+
+    name: str
+    axis: str
+    bodies: tuple[Body, ...]
+    towards: Array
+    behind: float
+
+    def placed(self, placed: Placed) -> tuple[Body, ...]:
+        """Its parts behind its joint as the parts of an arm lie."""
+        world_from_axis = placed.frames[self.axis]
+        pose = np.eye(4)
+        if np.linalg.norm(self.towards) > ONE_LINE:
+            back = np.linalg.inv(world_from_axis) @ placed.poses[part_of(self.axis)]
+            away = next((own for own in (back[:2, 3], back[:2, 2]) if np.linalg.norm(own) > ONE_LINE), self.towards[:2])
+            turn = np.arctan2(away[1], away[0]) - np.arctan2(self.towards[1], self.towards[0])
+            pose[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+        pose[2, 3] = -self.behind - placed.assembly.features[self.axis].shape.ends[:, 2].max()
+        return tuple(_moved(body, world_from_axis @ pose) for body in self.bodies)
+
+
+def _moved(body: Body, pose: Array) -> Body:
+    """A body whose surface lies in the frame of its train, in a world."""
+    return Body(body.name, pose, body.surface, None, body.colour)
+
+
+def trains_in_joints(simulation: Simulation) -> tuple[TrainInJoint, ...]:
+    """The trains that turn the joints of an arm, from its nominal build.
+
+    Raises:
+        RunError: the nominal build cannot be shown.
+    """
+    system = simulation.system
+    assert isinstance(system, MachineSystem)
+    joints = (
+        [
+            (own.train, own.between[0])
+            for spec in system.parts.of(OpenChainSpec).values()
+            for own in spec.joints.values()
+            if own.train
+        ]
+        if system.parts is not None
+        else []
+    )
+    if not joints:
+        return ()
+    display = shown_build(seated_build(replayed(simulation, nominal_build(system)), "nominal"))
+    worlds = {world.name: world.bodies for world in display.worlds}
+    layout = system.gears.model.layout
+    trains = {own.name: own for own in system.gears.model.trains}
+    found = []
+    for name, axis in joints:
+        train = trains[name]
+        output, first = layout.world_from_shaft[train.output], layout.world_from_shaft[train.driven]
+        into = np.linalg.inv(output)
+        if (into @ first)[2, 3] > ONE_LINE:
+            into = np.diag([1.0, -1.0, -1.0, 1.0]) @ into
+        bodies = tuple(_joined(name, worlds.get(layout.root_of[train.output], ()), into))
+        if bodies:
+            crossing = np.linalg.norm(np.cross(output[:3, 2], first[:3, 2])) > ONE_LINE
+            towards = (into @ first)[:3, 3] * (1.0, 1.0, 0.0) if crossing else np.zeros(3)
+            behind = max(float(body.surface()[0][:, 2].max()) for body in bodies)
+            found.append(TrainInJoint(name, axis, bodies, towards, behind))
+    return tuple(found)
+
+
+def _joined(train: str, bodies: Sequence[Body], into: Array) -> Iterator[Body]:
+    """Bodies of a train in another frame, coarse, those of one colour as one."""
+    by_colour: dict[str, list[Body]] = {}
+    for body in bodies:
+        by_colour.setdefault(body.colour, []).append(body)
+    for colour, alike in by_colour.items():
+        surface = _coarse(alike, into)
+        words = commonprefix([body.name for body in alike]).strip() or ", ".join(body.name for body in alike)
+        yield Body(f"{train}: {words}", np.eye(4), partial(_as_made, surface), None, colour)
+
+
+def _coarse(bodies: Sequence[Body], into: Array) -> Surface:
+    vertices, triangles, count = [], [], 0
+    for body in bodies:
+        if body.posed is None:
+            own, faces = body.surface()
+        else:
+            mesh = display_mesh(body.posed().shape, COARSE)
+            own, faces = mesh.vertices, mesh.triangles
+        pose = into @ body.world_from_part
+        vertices.append(own @ pose[:3, :3].T + pose[:3, 3])
+        triangles.append(faces + count)
+        count += len(own)
+    return np.concatenate(vertices), np.concatenate(triangles)
+
+
+def _as_made(surface: Surface) -> Surface:
+    return surface
