@@ -31,6 +31,8 @@ const ON = 0.02; // of the size of the model: how far off a feature a click may 
 const SVG = "http://www.w3.org/2000/svg";
 const DIGITS = 3; // of a factor that a build allows
 const STILL = 4; // pixels that a pointer may move in a click
+const FRAME = 60, REST = 1200; // ms, of a frame of a motion, and of one in which measures are read
+const ERRORS = ":errors"; // in the place of a measure: errors of places, as pictures have them
 const GREY = "#b4bac0";
 const FROM = new Vector3(0.9, 0.75, 1.1);
 
@@ -57,6 +59,10 @@ class View {
   #lines = []; // of the measure
   #over = null; // the label under the pointer
   #hides = {}; // kinds of labels
+  #moment = 0; // frame of a motion
+  #ahead = 1;
+  #playing = 0; // the request of its next frame
+  #moves = new WeakMap(); // numbers of motions
 
   constructor(figure, renderer) {
     this.figure = figure;
@@ -102,8 +108,10 @@ class View {
     this.renderer.domElement.parentElement.hidden = false;
     if (other) this.#turned(told.up);
     this.pose();
-    if (other) this.fit();
-    else this.resize();
+    if (other) {
+      this.fit();
+      this.pose();
+    } else this.resize();
   }
 
   // Show nothing, until there is another model.
@@ -228,7 +236,11 @@ class View {
       part: (own) => this.#choose(own),
       names: (own) => { this.#hides.name = !own.checked; },
       flags: (own) => { this.#hides.flag = !own.checked; },
-      measured: (own) => { this.#measure = own.value; },
+      measured: (own) => this.#read_measure(own.value),
+      moment: (own) => {
+        this.pause();
+        this.#moment = Number(own.value);
+      },
     };
     for (const kind of ["input", "change"]) {
       this.figure.addEventListener(kind, ({ target }) => {
@@ -239,6 +251,7 @@ class View {
     }
     this.figure.addEventListener("click", ({ target }) => {
       if (target.name === "fit") this.fit();
+      if (target.name === "play") this.#playing ? this.pause() : this.play();
     });
     const canvas = this.renderer.domElement;
     canvas.addEventListener("dblclick", () => this.fit());
@@ -276,9 +289,9 @@ class View {
 
   // The feature on whose face a part is hit, where it lies undeviated: of those that are as near the smallest.
   #nearest(hit) {
-    const index = this.parts.indexOf(hit.object), here = this.#state().poses[index];
+    const index = this.parts.indexOf(hit.object), here = hit.object.matrix.clone();
     const nominal = new Matrix4().fromArray(this.told.builds[0].states[0].poses[index]);
-    const place = hit.point.clone().applyMatrix4(nominal.multiply(new Matrix4().fromArray(here).invert()));
+    const place = hit.point.clone().applyMatrix4(nominal.multiply(here.invert()));
     const near = Object.entries(this.told.features ?? {}).filter(([, own]) => own.part === hit.object.userData.part).map(([name, own]) => {
       const local = place.clone().applyMatrix4(new Matrix4().fromArray(own.frame).invert());
       const reach = new Vector3().fromArray(own.reach);
@@ -300,7 +313,7 @@ class View {
     this.#shown.state = place;
     this.parts.forEach((part, index) => {
       part.geometry = this.#geometries[state.meshes[index]];
-      part.matrix.copy(new Matrix4().fromArray(state.poses[index]));
+      part.matrix.copy(new Matrix4().fromArray(state.poses[index])).premultiply(this.#move(state, index, this.#frame(state)));
       part.updateMatrixWorld(true);
       this.#paint(part);
     });
@@ -315,7 +328,7 @@ class View {
     const named = this.#hides.name ? [] : Object.entries(state.names);
     for (const [name, place] of named) {
       const feature = Object.hasOwn(state.features ?? {}, name) ? name : name.slice(0, Math.max(name.lastIndexOf(", "), 0));
-      if (!flags.has(feature)) found.push({ kind: "name", lines: [name], of: [name, feature], place: new Vector3().fromArray(place), feature });
+      if (!flags.has(feature)) found.push({ kind: "name", lines: [name], of: [name, feature], place: this.#carried(state, feature, place), feature });
     }
     for (const { name, place, own } of flags.values()) {
       const datum = own.some((flag) => !flag.name), isIdle = (flag) => this.#isIdle(flag);
@@ -325,10 +338,12 @@ class View {
       const idle = named.filter(isIdle).length; // the last of them
       found.push({ kind: own.every(isIdle) ? "flag idle" : "flag", lines, full, idle, of: own.flatMap((flag) => [flag.name, ...flag.of]), place, feature: name });
     }
-    this.#lines = (state.measured?.[this.#measure] ?? []).map(([points, error]) => (
-      { points: points.map((point) => new Vector3().fromArray(point)), error }
-    ));
-    if (this.#lines.length) found.unshift(this.#number(state));
+    const { measured, errors } = this.#read(state), read = this.#measure === ERRORS ? errors : [this.#measure];
+    this.#lines = read.flatMap((name) => (measured[name] ?? []).map(([points, error]) => {
+      const [start, ...others] = points.map((point) => new Vector3().fromArray(point)), times = error ? state.enlarged : 1;
+      return { name, points: [start, ...others.map((own) => own.sub(start).multiplyScalar(times).add(start))], error };
+    }));
+    for (const name of read) if (measured[name]?.length) found.unshift(this.#number(state, name));
     this.#labels = found.map((own) => {
       const element = document.createElement("span"), words = document.createElement("b");
       element.className = own.kind;
@@ -349,15 +364,18 @@ class View {
     }));
   }
 
-  // The measure's name and value, at the middle of what is measured; of a component of an error the whole of it too.
-  #number(state) {
-    const value = state.values?.[this.#measure], [{ points, error }] = this.#lines;
-    const words = [value ? `${this.#measure} ${value}` : this.#measure];
+  // Name and value of a measure, at the middle of what is measured; of an error the factor of its arrow, and of a
+  // component the whole of it too.
+  #number(state, name) {
+    const value = state.values?.[name], { points, error } = this.#lines.find((own) => own.name === name);
+    const words = [value ? `${name} ${value}` : name];
     const plain = this.told.builds[this.#shown.build].states.find((own) => own.factor === 1);
     if (error && points.length > 2 && plain) {
-      const [start, end] = [0, -1].map((k) => new Vector3().fromArray(plain.measured[this.#measure][0][0].at(k)));
+      const [start, end] = [0, -1].map((k) => new Vector3().fromArray(this.#read(plain).measured[name][0][0].at(k)));
       words.push(`${length(start.distanceTo(end))} off its nominal place`);
     }
+    const drawn = error && points[0].distanceTo(points[1]) > ON * (this.reach ?? 0);
+    if (drawn) words.push(`arrow × ${Number((state.factor * state.enlarged).toPrecision(DIGITS))}`);
     return { kind: "number", lines: words, of: [], place: points[0].clone().add(points[1] ?? points[0]).multiplyScalar(0.5) };
   }
 
@@ -380,13 +398,89 @@ class View {
   #where(state, name) {
     const places = state.features ?? {};
     const feature = Object.hasOwn(places, name) ? name : Object.keys(places).find((own) => is(own, name));
-    if (feature) return { name: feature, place: new Vector3().fromArray(places[feature]) };
+    if (feature) return { name: feature, place: this.#carried(state, feature, places[feature]) };
     const part = this.parts.find((own) => own.visible && [own.userData.part, own.userData.name].includes(name))
       ?? this.parts.find((own) => own.visible && is(own.userData.part, name));
     if (!part) return null;
     part.geometry.computeBoundingBox();
     const box = part.geometry.boundingBox;
     return { name, place: box.getCenter(new Vector3()).applyMatrix4(part.matrix) };
+  }
+
+  // motions: a state's parts go through poses ------------------------------------------------------
+
+  // The frame that is shown of a state's motion; 0 of one that stands still.
+  #frame({ motion }) {
+    return motion ? Math.min(this.#moment, motion.captions.length - 1) : 0;
+  }
+
+  // The motion of a part in a frame, from where it stands in the state.
+  #move({ motion }, part, frame) {
+    const found = new Matrix4(), place = motion ? motion.moved.indexOf(part) : -1;
+    if (place < 0) return found;
+    if (!this.#moves.has(motion)) this.#moves.set(motion, new Float64Array(bytes(motion.frames).buffer));
+    const first = 12 * (frame * motion.moved.length + place);
+    return found.set(...this.#moves.get(motion).subarray(first, first + 12), 0, 0, 0, 1);
+  }
+
+  // The place of a feature, carried along with its part.
+  #carried(state, feature, place) {
+    const part = this.parts.findIndex((own) => own.userData.part === this.told.features[feature]?.part);
+    return new Vector3().fromArray(place).applyMatrix4(this.#move(state, part, this.#frame(state)));
+  }
+
+  // The pose of a motion in which measures are read, if it is shown.
+  #stop({ motion }, frame) {
+    return motion && Object.values(motion.stops).find((own) => own.frames.includes(frame));
+  }
+
+  // Lines of measures where parts stand, and names of the errors that pictures have; none on the way.
+  #read(state) {
+    const nothing = { measured: {}, errors: [] };
+    return (state.motion ? this.#stop(state, this.#frame(state)) : { ...nothing, ...state }) ?? nothing;
+  }
+
+  // A measure that is read in another pose is shown there.
+  #read_measure(name) {
+    this.#measure = name;
+    const state = this.#state();
+    if (!state.motion || Object.hasOwn(this.#read(state).measured, name)) return;
+    const there = Object.values(state.motion.stops).find((own) => Object.hasOwn(own.measured, name));
+    if (!there) return;
+    this.pause();
+    [this.#moment] = there.frames;
+  }
+
+  // Go on with the motion, to its end and back, or to its end and from its beginning again.
+  play() {
+    this.pause();
+    let until = performance.now();
+    const next = (now) => {
+      const state = this.#state();
+      if (!state?.motion) return this.pause();
+      this.#playing = requestAnimationFrame(next);
+      if (now < until) return null;
+      this.#advance(state.motion);
+      until = now + (this.#stop(state, this.#moment) ? REST : FRAME);
+      return this.pose();
+    };
+    this.#playing = requestAnimationFrame(next);
+    this.pose();
+  }
+
+  pause() {
+    cancelAnimationFrame(this.#playing);
+    this.#playing = 0;
+    const button = this.figure.querySelector('[name="play"]');
+    if (button) button.textContent = "play";
+  }
+
+  #advance({ captions, back }) {
+    const last = captions.length - 1;
+    if (!back) this.#ahead = 1;
+    else if (this.#moment >= last) this.#ahead = -1;
+    else if (this.#moment <= 0) this.#ahead = 1;
+    this.#moment = this.#moment + this.#ahead > last ? 0 : this.#moment + this.#ahead;
   }
 
   // Controls and words of the state that is shown.
@@ -403,12 +497,25 @@ class View {
     }
     if (number) number.value = times(states[place]);
     if (words) words.textContent = states[place].words;
+    const { motion } = states[place], moving = of(".moving");
+    if (!moving) return;
+    const [play, moment, caption, swing] = ['[name="play"]', '[name="moment"]', ".caption", ".swing"].map(of);
+    moving.hidden = !motion;
+    if (!motion) return;
+    const frame = this.#frame(states[place]);
+    play.textContent = this.#playing ? "pause" : "play";
+    moment.max = motion.captions.length - 1;
+    moment.value = frame;
+    moment.setAttribute("aria-valuetext", motion.captions[frame]);
+    caption.textContent = motion.captions[frame];
+    swing.textContent = motion.words;
   }
 
   fit() {
     const box = new Box3();
     this.parts.filter((part) => part.visible).forEach((part) => box.expandByObject(part));
     if (box.isEmpty()) this.parts.forEach((part) => box.expandByObject(part));
+    this.#widen(box);
     const sphere = box.getBoundingSphere(new Sphere());
     this.reach = Math.max(sphere.radius, 1e-6);
     const up = this.camera.up.clone().normalize();
@@ -428,6 +535,17 @@ class View {
     this.half = this.#half(box);
     this.resize();
     this.draw();
+  }
+
+  // A box about parts that are seen, in all poses of their motion.
+  #widen(box) {
+    const state = this.#state(), frames = state.motion?.captions.length ?? 0;
+    for (const index of state.motion?.moved ?? []) {
+      const part = this.parts[index], own = new Matrix4().fromArray(state.poses[index]);
+      for (let frame = 0; part.visible && frame < frames; frame += 1) {
+        box.union(part.geometry.boundingBox.clone().applyMatrix4(own.clone().premultiply(this.#move(state, index, frame))));
+      }
+    }
   }
 
   // Half of the width and of the height of a box, as the camera sees it.
@@ -620,6 +738,8 @@ function tol3dView(figure, model, told) {
   const renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
   const view = new View(figure, renderer);
+  const measure = figure.querySelector('[name="measured"]');
+  if (measure) view.measure(measure.value);
   view.ready = view.replace(model, told).then(() => {
     figure.dataset.ready = "yes";
     performance.mark("seen");
@@ -634,6 +754,7 @@ async function show(figure, told, model) {
   const view = tol3dView(figure, await unpacked(model.textContent.trim()), JSON.parse(told.textContent));
   await view.ready;
   figure.view = view;
+  if (figure.dataset.plays && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) view.play();
 }
 
 const [told, model] = ["view-data", "view-model"].map((own) => document.getElementById(own));

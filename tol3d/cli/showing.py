@@ -289,7 +289,7 @@ def view(
     ] = None,
     screenshot: Annotated[Path | None, typer.Option(help="Write a picture instead of opening a window.")] = None,
     animate: Annotated[
-        Path | None, typer.Option(help="Write moving pictures instead: .gif, .webp or .png (animated).")
+        Path | None, typer.Option(help="Write moving pictures instead: .gif, .webp, .png (animated), or a page, .html.")
     ] = None,
     motion: Annotated[
         str | None, typer.Option(metavar="NAME", help="What moves, with --animate; default: the first there is.")

@@ -1,7 +1,7 @@
 """A motion as moving pictures: drawn off screen frame by frame, written as one file."""
 
 import io
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -10,14 +10,20 @@ import pyvista as pv
 from PIL import Image, ImageColor
 
 from tol3d.errors import InputError, unwritable
+from tol3d.report.body import Arrow
 from tol3d.report.drawn_solids import (
     EDGE_COLOUR,
+    GAP_COLOUR,
     add_body,
     add_dots,
+    add_label,
     add_title,
+    arrow,
     look,
     set_background,
 )
+from tol3d.report.error_arrows import NO_VALUES, values_of, with_errors
+from tol3d.report.html.document import moving_page
 from tol3d.report.motion import Motion, Shot, motion_of
 from tol3d.report.presenter import Display, Which, presenter_of, require_bodies
 from tol3d.report.view import choose_window
@@ -26,12 +32,14 @@ from tol3d.study.runs.run import Run
 
 Pictures = Sequence[Image.Image]
 
-ANIMATIONS: Final = (".gif", ".png", ".webp")
+PAGE: Final = ".html"
+ANIMATIONS: Final = (".gif", ".png", ".webp", PAGE)
 FRAME_SIZE: Final = (960, 640)  # pixels
 LEFT_SHARE: Final = 2 / 3  # of the width, the larger picture
 SECONDS: Final = 0.08  # a frame
-HELD: Final = 8  # frames for which the last one of a returning motion is held
+HELD: Final = 8  # frames for which one in which measures are read is held, and the last one of a returning motion
 COLOURS: Final = 64  # of a GIF; few enough for small files, enough for shaded solids
+SHADES: Final = (1.0, 0.8, 0.6)  # of a part's colour, that a GIF has
 SAMPLED: Final = 5  # frames from which they are chosen
 TITLE_SIZE, CAPTION_SIZE = 8, 11
 NEAREST: Final = 0.1  # of the distance from the eye to the scene: nothing drawn is nearer
@@ -53,7 +61,8 @@ def animate_run(
     Args:
         run: a finished run.
         which: a trial, or "worst", "nominal", "mean".
-        path: the file, with the ending of its format: .gif, .png (animated) or .webp.
+        path: the file, with the ending of its format: .gif, .png (animated), .webp, or .html for a page in which the
+            parts can be turned, of an assembly in its poses or on its paths.
         motion: what moves; None: the first motion there is.
         frames: their number; None: as many as suit the motion.
         magnify: scales the deviations and simulates again.
@@ -73,7 +82,11 @@ def animate_run(
     require_bodies(display)
     shown = motion_of(display, motion, frames)
     choose_window(needs_display=False)
-    content = encoded(shown, pictures(shown, display), path.suffix.lower())
+    if path.suffix.lower() == PAGE:
+        content = moving_page(run, display, which, motion=motion, frames=frames).encode()
+    else:
+        values = values_of(run, which, display.label, run.found.measures)
+        content = encoded(shown, pictures(shown, display, values), path.suffix.lower())
     try:
         write_whole(path, content)
     except OSError as error:
@@ -87,13 +100,17 @@ def encoded(motion: Motion, drawn: Iterator[Image.Image], suffix: str) -> bytes:
     Args:
         motion: whose frames are drawn.
         drawn: each frame once, in their order.
-        suffix: one of ANIMATIONS.
+        suffix: one of ANIMATIONS, not that of a page.
     """
     kept = list(drawn)
     if suffix == ".gif":
-        kept = list(_few_colours(kept, [*motion.colours.values(), EDGE_COLOUR, "#FFFFFF"]))
+        marks = [*motion.colours.values(), EDGE_COLOUR, "#FFFFFF"]
+        if not motion.colours:  # else parts fill the picture
+            marks += [GAP_COLOUR, *(shade for own in motion.world.bodies for shade in _shades(own.colour))]
+        kept = list(_few_colours(kept, dict.fromkeys(marks)))
     played = motion.played
-    lasts = [1000 * SECONDS * (HELD if motion.back and k in (0, len(kept) - 1) else 1) for k in played]
+    ends = (0, len(kept) - 1) if motion.back else ()
+    lasts = [1000 * SECONDS * (HELD if k in ends or motion.frames[k].stop else 1) for k in played]
     first, *others = [kept[k] for k in played]
     options: dict[str, Any] = {
         ".gif": {"format": "GIF", "optimize": False, "disposal": 1},
@@ -105,7 +122,13 @@ def encoded(motion: Motion, drawn: Iterator[Image.Image], suffix: str) -> bytes:
     return stream.getvalue()
 
 
-def _few_colours(drawn: Pictures, exact: Sequence[str]) -> Iterator[Image.Image]:
+def _shades(colour: str) -> Iterator[str]:
+    """A colour "#RRGGBB" as lit faces have it, and others less."""
+    for light in SHADES:
+        yield "#" + "".join(f"{round(light * part):02X}" for part in ImageColor.getrgb(colour)[:3])
+
+
+def _few_colours(drawn: Pictures, exact: Collection[str]) -> Iterator[Image.Image]:
     """Pictures in the colours of some of them and some exact ones, "#RRGGBB": static pixels stay unchanged.
 
     They are not dithered: noise that changes from frame to frame would triple the file.
@@ -119,13 +142,15 @@ def _few_colours(drawn: Pictures, exact: Sequence[str]) -> Iterator[Image.Image]
         yield picture.quantize(palette=palette, dither=Image.Dither.NONE)
 
 
-def pictures(motion: Motion, display: Display) -> Iterator[Image.Image]:
+def pictures(motion: Motion, display: Display, values: Mapping[str, str] = NO_VALUES) -> Iterator[Image.Image]:
     """Each frame of a motion, drawn.
 
     Args:
         motion: the motion.
         display: of the build that moves.
+        values: of measures, in words; errors that have one are drawn where they are read.
     """
+    arrows = {world.name: with_errors(world, values).arrows for world in display.worlds}
     several = len(motion.shots) > 1
     plotter = pv.Plotter(
         off_screen=True,
@@ -140,10 +165,22 @@ def pictures(motion: Motion, display: Display) -> Iterator[Image.Image]:
         for number in range(len(motion.frames)):
             for place, own in enumerate(actors):
                 _move(plotter, motion, place, number, own)
+            read = [*_read(plotter, arrows.get(motion.frames[number].stop, {}))]
             plotter.render()
             yield Image.fromarray(np.asarray(plotter.screenshot(return_img=True)))
+            for actor in read:
+                plotter.remove_actor(actor, render=False)
     finally:
         plotter.close()
+
+
+def _read(plotter: pv.Plotter, arrows: Mapping[str, Arrow]) -> Iterator[pv.Actor]:
+    """Draw arrows with their names; what is drawn."""
+    for name, own in arrows.items():
+        assert own.length is not None
+        solid = arrow(own.place, own.direction, own.length)
+        yield plotter.add_mesh(solid, color=GAP_COLOUR, ambient=0.6, reset_camera=False, render=False)
+        yield add_label(plotter, own.place + own.length * own.direction, name, GAP_COLOUR, len(name))
 
 
 def _chosen(plotter: pv.Plotter, motion: Motion, place: int) -> Shot:

@@ -10,7 +10,7 @@ from vtkmodules.vtkFiltersGeneral import vtkContourTriangulator
 
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body
-from tol3d.report.heading import legible
+from tol3d.report.heading import LONGEST, legible
 
 EDGE_COLOUR: Final = "#30373F"
 CONTACT_COLOUR, GAP_COLOUR = "#00714F", "#C03A00"  # green and vermillion: Okabe and Ito, darkened
@@ -100,11 +100,11 @@ def add_dots(plotter: pv.Plotter, name: str, places: Sequence[Array], radius: fl
         plotter.add_mesh(dots, color=colour, lighting=False, name=name, reset_camera=False, render=False)
 
 
-def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str) -> None:
-    """A label at a point, whatever is in front of it."""
-    plotter.add_point_labels(
+def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str, longest: int = LONGEST) -> pv.Actor:
+    """A label at a point, of so many letters at most, whatever is in front of it; what is drawn."""
+    return plotter.add_point_labels(
         np.asarray(place)[None],
-        [legible(text)],
+        [legible(text, longest)],
         text_color="white",
         shape_color=colour,
         shape_opacity=0.9,
@@ -113,6 +113,8 @@ def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str) -> None
         show_points=False,
         always_visible=True,
         margin=5,
+        reset_camera=False,
+        render=False,
     )
 
 

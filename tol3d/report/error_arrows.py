@@ -15,6 +15,7 @@ from tol3d.report.shown_unit import shown_run
 from tol3d.study.runs.run import Run
 from tol3d.study.system.outcome import value_column
 
+NO_VALUES: Final[Mapping[str, str]] = {}
 TRIAL: Final = re.compile(r"trial-(\d+)(-x.*)?")
 WHOLE: Final = 2
 """Points of the line of a whole error; of a component a third one is the place itself."""
@@ -54,7 +55,7 @@ def with_errors(world: World, values: Mapping[str, str]) -> World:
         values: of measures, in words; those without one have no arrow.
     """
     factor, arrows = (world.magnify or 1.0) * world.enlarged, dict[str, Arrow]()
-    for name, points in _errors(world, values).items():
+    for name, points in errors_of(world, values).items():
         along = world.enlarged * (points[1] - points[0])
         length = float(np.linalg.norm(along))
         if length > 0.0:
@@ -63,7 +64,7 @@ def with_errors(world: World, values: Mapping[str, str]) -> World:
     return world if not arrows else replace(world, arrows={**world.arrows, **arrows})
 
 
-def _errors(world: World, values: Mapping[str, str]) -> Mapping[str, Array]:
+def errors_of(world: World, values: Mapping[str, str]) -> Mapping[str, Array]:
     """Points of the errors that are drawn, by measure: of the first whole one at each place, else of its components."""
     every = [(name, line.points) for name in values for line in world.measured.get(name, ()) if line.is_error]
     whole = dict[tuple[float, ...], str]()

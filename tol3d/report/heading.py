@@ -82,6 +82,9 @@ def cut(text: str, longest: int) -> str:
     return text if len(text) <= longest else text[: max(longest - 1, 0)] + "…"
 
 
-def legible(text: str, longest: int = 34) -> str:
+LONGEST: Final = 34  # letters of a name in a picture
+
+
+def legible(text: str, longest: int = LONGEST) -> str:
     """A user's name as a label of matplotlib or VTK: no mathematics in its dollar signs, not longer than fits."""
     return cut(text, longest).replace("$", r"\$")

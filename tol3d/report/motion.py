@@ -122,7 +122,6 @@ class Motion:
         shots: the first one large, at the left, the others below each other at its right; one alone fills the picture.
         colours: of the marks, "#RRGGBB" by what they are.
         back: whether it goes back the way it came, so that it ends as it began.
-        in_worlds: True if its world is the first of the display, so that a page can show it there.
         notes: what the user should know.
     """
 
@@ -132,7 +131,6 @@ class Motion:
     colours: Mapping[str, str] = field(default_factory=dict)
     back: bool = False
     notes: tuple[str, ...] = ()
-    in_worlds: bool = False
 
     @property
     def played(self) -> tuple[int, ...]:
@@ -161,6 +159,21 @@ class Movable(Protocol):
             InputError: the build cannot be moved so.
         """
         ...
+
+
+@runtime_checkable
+class Travelling(Movable, Protocol):
+    """A display whose parts move as they stand in its first world, so that a page can show it there."""
+
+    @property
+    def travels(self) -> Sequence[str]:
+        """Names of such motions, some of its `motions`; it may be empty."""
+        ...
+
+
+def travels_of(display: Display) -> Sequence[str]:
+    """Names of the motions of a build that a page can show."""
+    return display.travels if isinstance(display, Travelling) else ()
 
 
 def motion_of(display: Display, name: str | None, frames: int | None) -> Motion:

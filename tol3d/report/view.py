@@ -13,7 +13,7 @@ import pyvista as pv
 from tol3d.errors import InputError, unwritable
 from tol3d.report.body import World
 from tol3d.report.drawn_solids import add_title
-from tol3d.report.error_arrows import values_of, with_errors
+from tol3d.report.error_arrows import NO_VALUES, values_of, with_errors
 from tol3d.report.presenter import Display, Panel, Which, presenter_of, require_bodies
 from tol3d.report.whole import draw_whole
 from tol3d.study.runs.run import Run
@@ -21,7 +21,6 @@ from tol3d.study.runs.run import Run
 WINDOW_SIZE: Final = (1800, 1050)  # pixels
 TITLE_SIZE: Final = 13
 LEFT_SHARE: Final = 0.66  # of the window's width, the larger picture
-NO_VALUES: Final[Mapping[str, str]] = {}
 PICTURES: Final = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp")
 
 

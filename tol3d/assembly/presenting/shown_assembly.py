@@ -170,6 +170,11 @@ class ShownAssembly:
         """The paths of its moves; see `tol3d.report.motion.Movable`."""
         return tuple(self._posed.paths) if self._posed is not None else ()
 
+    @property
+    def travels(self) -> tuple[str, ...]:
+        """All of them; see `tol3d.report.motion.Travelling`."""
+        return self.motions
+
     def motion(self, name: str, frames: int | None) -> Motion:
         """Along a path, there and back; see `tol3d.report.motion.Movable`."""
         system = self._posed
@@ -187,7 +192,7 @@ class ShownAssembly:
             shown.append(Frame(words, moved_from(self._in_poses[0][1], own, world), stop=stop))
         look = seen_whole(world, [frame.poses for frame in shown])
         notes = () if len(placed) == len(set(chosen)) else ("it cannot be assembled in all poses of the path",)
-        return Motion(world, tuple(shown), (Shot(name, (look,)),), back=True, notes=notes, in_worlds=True)
+        return Motion(world, tuple(shown), (Shot(name, (look,)),), back=True, notes=notes)
 
     def view(self, close_up: str | None) -> View:
         """The world, its parts named."""

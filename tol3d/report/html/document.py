@@ -23,7 +23,7 @@ from tol3d.report.html.svg import figure, illustrated
 from tol3d.report.joint import correlation_blocks
 from tol3d.report.measure_charts import chart_of
 from tol3d.report.page import Page, Table, note, warning
-from tol3d.report.presenter import Presenter, presenter_of
+from tol3d.report.presenter import Display, Presenter, Which, presenter_of
 from tol3d.report.report_sections import (
     CORRELATIONS,
     MEASURES,
@@ -109,6 +109,23 @@ def report_html(
     )
     body.append(tag("footer", tag("p", made, class_="note", id="made")))
     return _document(first.scene, body)
+
+
+def moving_page(
+    run: Run, display: Display, which: Which, *, motion: str | None = None, frames: int | None = None
+) -> str:
+    """A build in motion, as a page.
+
+    Args:
+        run: whose.
+        display, which, motion, frames: see `moving_3d`.
+
+    Raises:
+        InputError: no such motion, or none that a page can show.
+    """
+    moving: Markup = import_module(VIEW_3D).moving_3d(run, display, which, motion, frames)
+    scene = run.found.scene
+    return _document(scene, [tag("h1", f"{scene}, {display.label}"), moving])
 
 
 def _head(run: Run) -> Iterator[Markup]:

@@ -4,7 +4,7 @@ import base64
 import gzip
 import json
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from io import BytesIO
 from itertools import chain
 from pathlib import Path
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from tol3d.errors import Tol3dError
+from tol3d.errors import InputError, Tol3dError
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Surface
 from tol3d.report.drawn_solids import poly_data
@@ -22,9 +22,10 @@ from tol3d.report.error_arrows import values_of
 from tol3d.report.heading import shown_measures
 from tol3d.report.html.blocks import Markup, tag
 from tol3d.report.html.view_model import ViewModel
+from tol3d.report.motion import travels_of
 from tol3d.report.presenter import Display, Presenter, Which
 from tol3d.report.shown_unit import shown_run
-from tol3d.report.view import view_run
+from tol3d.report.view import view_build, view_run
 from tol3d.study.runs.run import Run
 
 FACTORS: Final = (1.0, 10.0, 100.0)
@@ -38,6 +39,8 @@ FEWEST_FACETS: Final = 1000
 MOST_TRIES: Final = 4
 LEAST_LEFT: Final = 0.02
 """Share of a mesh's triangles that is left at least."""
+ERRORS: Final = ":errors"
+"""Errors of places as pictures have them, in the place of a measure; `viewer.js` knows it."""
 STILL_WIDTH, STILL_QUALITY = 1100, 80
 
 
@@ -54,19 +57,54 @@ def view_3d(run: Run, presenter: Presenter, trials: Sequence[int] = ()) -> Marku
     for which in wanted:
         try:
             displays = _displays(run, presenter, which)
-            first = next(displays)
-            label, lines = first[1].label, (own.measured for own in first[1].worlds)
-            values = values_of(run, which, label, dict.fromkeys(name for own in lines for name in own))
-            model.add(_called(which), chain([first], displays), values)
+            _, first, _ = own = next(displays)
+            if not model.builds and (motions := travels_of(first)):
+                model = ViewModel(first.worlds[0].name, motion=motions[0])
+            model.add(_called(which), chain([own], displays), _read(run, which, first))
         except Tol3dError as error:
             if not model.builds:
                 return tag("p", f"no 3D view: {error}", class_="note")
+    shown: Which = "worst" if run.keeps_trials else "nominal"
+    return _page(model, lambda path: view_run(run, shown, screenshot=path))
+
+
+def moving_3d(run: Run, display: Display, which: Which, motion: str | None, frames: int | None) -> Markup:
+    """A build in 3D that moves as soon as it is seen, unless its reader wants no motion.
+
+    Args:
+        run: whose.
+        display: the build.
+        which: see `Presenter.display`.
+        motion: its name; None: the first there is.
+        frames: how many; None: as many as suit it.
+
+    Raises:
+        InputError: no such motion, or none that a page can show.
+    """
+    motions = travels_of(display)
+    if not motions or motion not in (None, *motions):
+        wanted = f"expected one of {', '.join(motions)}" if motions else "it has no poses and no path"
+        raise InputError(f"{display.label}: a page cannot show it in motion: {wanted}")
+    model = ViewModel(display.worlds[0].name, motion=motion or motions[0], frames=frames)
+    words = "; ".join((display.label, *display.notes))
+    values = _read(run, which, display)
+    model.add(_called(which), [(display.worlds[0].magnify or 1.0, display, words)], values)
+    return _page(model, lambda path: view_build(display, values, screenshot=path), plays="yes")
+
+
+def _read(run: Run, which: Which, display: Display) -> Mapping[str, str]:
+    """Values of the measures that are read in the worlds of a build, in words."""
+    return values_of(run, which, display.label, dict.fromkeys(name for own in display.worlds for name in own.measured))
+
+
+def _page(model: ViewModel, draw: Callable[[Path], object], plays: str | None = None) -> Markup:
+    """A figure of builds, as small as a page can be, and the picture that stands there where nothing can be turned."""
     packed, nominal = _packed(model), tuple[str, ...]()
     if len(packed) > LARGEST:
         model, nominal = model.undeviated()
         packed = _packed(model)
     model, packed, coarser = _within(model, packed)
-    return _figure(model, packed, _still(run), _notes(model, nominal, coarser))
+    return _figure(model, packed, _still(draw), _notes(model, nominal, coarser), plays)
 
 
 def _displays(run: Run, presenter: Presenter, which: Which) -> Iterator[tuple[float, Display, str]]:
@@ -125,13 +163,12 @@ def _notes(model: ViewModel, nominal: Sequence[str], coarser: Set[int]) -> list[
     return [*notes, *([f"coarser facets, for the size of this page: {named}"] if named else [])]
 
 
-def _still(run: Run) -> str:
-    """The picture that stands there where nothing can be turned: as `tol3d view` shows it."""
-    which: Which = "worst" if run.keeps_trials else "nominal"
+def _still(draw: Callable[[Path], object]) -> str:
+    """The picture that stands there where nothing can be turned: as `tol3d view` draws it."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "still.png"
         try:
-            view_run(run, which, screenshot=path)
+            draw(path)
         except Tol3dError:
             return ""
         picture = BytesIO()
@@ -141,7 +178,7 @@ def _still(run: Run) -> str:
         return base64.b64encode(picture.getvalue()).decode()
 
 
-def _figure(model: ViewModel, packed: bytes, still: str, notes: Sequence[str]) -> Markup:
+def _figure(model: ViewModel, packed: bytes, still: str, notes: Sequence[str], plays: str | None) -> Markup:
     data = json.dumps(_plain(model.told()), sort_keys=True, separators=(",", ":")).replace("<", "\\u003c")
     picture = tag("img", src=f"data:image/jpeg;base64,{still}", alt="the parts, as tol3d view shows them")
     return tag(
@@ -153,12 +190,26 @@ def _figure(model: ViewModel, packed: bytes, still: str, notes: Sequence[str]) -
         tag("script", Markup(data), type="application/json", id="view-data"),
         tag("script", Markup(base64.b64encode(packed).decode()), type="text/plain", id="view-model"),
         class_="view",
+        data_plays=plays,
     )
 
 
 def _controls(model: ViewModel) -> Iterator[Markup]:
+    if any(state.motion for own in model.builds for state in own.states):
+        yield tag(
+            "div",
+            tag("button", "play", type="button", name_="play"),
+            tag("label", f"{model.motion} ", tag("input", type="range", name_="moment", min=0, max=0, value=0, step=1)),
+            tag("span", class_="caption"),
+            tag("span", class_="swing dim"),
+            class_="controls moving",
+        )
     options = (tag("option", own.name, value=number) for number, own in enumerate(model.builds))
-    measured = dict.fromkeys(name for own in model.builds for state in own.states for name in state.measured)
+    states = [state for own in model.builds for state in own.states]
+    stops = [own for state in states if state.motion for own in state.motion.stops.values()]
+    measured = dict.fromkeys(name for own in (*states, *stops) for name in own.measured)
+    has_errors = any(state.errors for state in states) or any(own.errors for own in stops)
+    errors = tag("option", "errors of places", value=ERRORS) if has_errors else None
     measures = (tag("option", name, value=name) for name in measured)
     slider = tag("input", type="range", name_="factor", min=0, max=len(FACTORS) - 1, value=0, step=1)
     number = tag("output", f"{FACTORS[0]:g}", name_="times")
@@ -167,7 +218,7 @@ def _controls(model: ViewModel) -> Iterator[Markup]:
         tag("label", "build ", tag("select", *options, name_="build")),
         tag("label", "deviations × ", number, " ", slider),
         tag("label", tag("input", type="checkbox", name_="names", checked=""), " names"),
-        tag("label", "measure ", tag("select", tag("option", "none", value=""), *measures, name_="measured"))
+        tag("label", "measure ", tag("select", errors, tag("option", "none", value=""), *measures, name_="measured"))
         if measured
         else None,
         tag("button", "fit", type="button", name_="fit"),

@@ -3,6 +3,7 @@
 The report embeds both, a server may serve them; `viewer.js` draws them. VTK is not needed.
 """
 
+import base64
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Final, cast
@@ -13,10 +14,14 @@ import trimesh
 from tol3d.errors import Tol3dError
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, Surface, World
+from tol3d.report.error_arrows import errors_of
+from tol3d.report.motion import motion_of
 from tol3d.report.presenter import Display
 
 ALIKE: Final = 2e-3
 """Fraction of a part's size: shapes that differ by less are drawn as one, at their best fit."""
+STILL: Final = 1e-9
+"""mm, and of rotations; a part that moves less stands still."""
 GRID: Final = 2.0**-13
 """mm; places of corners are rounded to it, an eighth of a micrometre, so that they pack."""
 
@@ -35,6 +40,9 @@ class State:
         measured: of each measure the lines along which it is read: points (3 numbers each) [mm], and whether they
             lead from where the last one lies nominally.
         values: of measures, in words.
+        enlarged: how many times as long as they are lines of errors are drawn.
+        errors: names of the measures whose errors pictures have.
+        motion: what its parts go through, if they move.
     """
 
     asked: float
@@ -46,6 +54,40 @@ class State:
     features: dict[str, list[float]] = field(default_factory=dict)
     measured: dict[str, list[tuple[list[list[float]], bool]]] = field(default_factory=dict)
     values: Mapping[str, str] = field(default_factory=dict)
+    enlarged: float = 1.0
+    errors: tuple[str, ...] = ()
+    motion: "ShownMotion | None" = None
+
+
+@dataclass(frozen=True, eq=False)
+class Stop:
+    """A pose of a motion in which measures are read: numbers of its frames; lines and errors as in a State."""
+
+    frames: tuple[int, ...]
+    measured: dict[str, list[tuple[list[list[float]], bool]]]
+    errors: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class ShownMotion:
+    """Poses that parts go through, from where they stand in a state.
+
+    Args:
+        words: factors that are not those of the state.
+        moved: indices of the parts that move.
+        frames: by frame and part the first three rows of the motion (4, 4) in the world, as the base64 of little-endian
+            doubles, which keeps every digit.
+        captions: of the frames.
+        stops: by their names.
+        back: True if it goes back the way it came.
+    """
+
+    words: str
+    moved: tuple[int, ...]
+    frames: str
+    captions: tuple[str, ...]
+    stops: dict[str, Stop]
+    back: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +127,8 @@ class ViewModel:
         parts: bodies of every build.
         builds: in the order in which they were added.
         world: the one that is shown; None before any build.
+        motion: the motion of displays that is told too; None: none.
+        frames: of it; None: as many as suit it.
     """
 
     wanted: str = ""
@@ -92,6 +136,8 @@ class ViewModel:
     parts: tuple[ShownPart, ...] = ()
     builds: list[ShownBuild] = field(default_factory=list)
     world: World | None = None
+    motion: str | None = None
+    frames: int | None = None
     _of_parts: dict[str, list[int]] = field(default_factory=dict, init=False)
 
     def kept(self) -> "ViewModel":
@@ -127,19 +173,37 @@ class ViewModel:
             poses = tuple(_pose(piece, on) for (_, piece), (_, on) in zip(pieces, placed, strict=True))
             names = {label: _place(place) for label, place in {**world.points, **world.marks}.items()}
             features = {label: _place(own.frame[:3, 3]) for label, own in world.features.items()}
-            measured = {
-                label: [([_place(point) for point in line.points], line.is_error) for line in lines]
-                for label, lines in world.measured.items()
-            }
             meshes = tuple(mesh for mesh, _ in placed)
             factor = asked if world.magnify is None else world.magnify
-            states.append(State(asked, factor, words, meshes, poses, names, features, measured, values or {}))
+            read = values or {}
+            state = State(asked, factor, words, meshes, poses, names, features, _lines(world), read, world.enlarged)
+            motion = self._motion(display, [body for body, _ in pieces], read)
+            states.append(replace(state, errors=tuple(errors_of(world, read)), motion=motion))
             if factor < asked:
                 break
         if not states:
             raise Tol3dError(f"{name}: there is nothing to show in 3D")
         self.world, self.parts = shown, parts
         self.builds.append(ShownBuild(name, tuple(states)))
+
+    def _motion(self, display: Display, bodies: Sequence[Body], values: Mapping[str, str]) -> ShownMotion | None:
+        """The motion that is told, of the bodies of pieces."""
+        if self.motion is None:
+            return None
+        own = motion_of(display, self.motion, self.frames)
+        moves = np.array(
+            [[frame.poses[body.name] @ np.linalg.inv(body.world_from_part) for body in bodies] for frame in own.frames]
+        )
+        moved = np.flatnonzero(np.abs(moves - np.eye(4)).max(axis=(0, 2, 3)) > STILL)
+        worlds = {world.name: world for world in display.worlds}
+        names = dict.fromkeys(frame.stop for frame in own.frames if frame.stop in worlds)
+        read, stops = _once([worlds[name] for name in names]), dict[str, Stop]()
+        for world in read:
+            at = tuple(k for k, frame in enumerate(own.frames) if frame.stop == world.name)
+            stops[world.name] = Stop(at, _lines(world), tuple(errors_of(world, values)))
+        numbers = base64.b64encode(np.ascontiguousarray(moves[:, moved, :3], dtype="<f8").tobytes()).decode()
+        captions = tuple(frame.caption for frame in own.frames)
+        return ShownMotion("; ".join(own.notes), tuple(moved.tolist()), numbers, captions, stops, own.back)
 
     def _place(self, body: Body) -> tuple[int, Array]:
         """Index of a body's mesh, and its pose on the part (4, 4)."""
@@ -240,6 +304,30 @@ def _part(part: str, piece: Body) -> ShownPart:
             found.append((name, end, count))
             end += count
     return ShownPart(piece.name, part, piece.colour, piece.opacity, tuple(found))
+
+
+def _once(worlds: Sequence[World]) -> Sequence[World]:
+    """Worlds with each measure in the one alone in which its lines are longest: that is where it is largest."""
+    lengths = [
+        {
+            name: sum(float(np.linalg.norm(own.points[-1] - own.points[0])) for own in lines)
+            for name, lines in its.items()
+        }
+        for its in (world.measured for world in worlds)
+    ]
+    most = {name: max(own.get(name, -1.0) for own in lengths) for its in lengths for name in its}
+    return [
+        replace(world, measured={name: own for name, own in world.measured.items() if its[name] == most[name]})
+        for world, its in zip(worlds, lengths, strict=True)
+    ]
+
+
+def _lines(world: World) -> dict[str, list[tuple[list[list[float]], bool]]]:
+    """Lines of the measures of a world."""
+    return {
+        label: [([_place(point) for point in line.points], line.is_error) for line in lines]
+        for label, lines in world.measured.items()
+    }
 
 
 def _place(numbers: Array) -> list[float]:

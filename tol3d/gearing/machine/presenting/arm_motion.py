@@ -184,4 +184,4 @@ def arm_motion(arm: Arm, frames: int | None) -> Motion:
     )
     notes = (f"{arm.play_words}, both ends of it in every pose",) if arm.factor else ("its joints have no play",)
     look = seen_whole(arm.world, [frame.poses for frame in shown])
-    return Motion(arm.world, shown, (Shot(POSES, (look,)),), back=True, notes=notes, in_worlds=True)
+    return Motion(arm.world, shown, (Shot(POSES, (look,)),), back=True, notes=notes)

@@ -107,7 +107,12 @@ class ShownMachine:
     @property
     def motions(self) -> tuple[str, ...]:
         """See `tol3d.report.motion.Movable`."""
-        return (*([POSES] if self.poses and self.system.joints else []), *self.gears.motions)
+        return (*self.travels, *self.gears.motions)
+
+    @property
+    def travels(self) -> tuple[str, ...]:
+        """That of an arm; see `tol3d.report.motion.Travelling`."""
+        return (POSES,) if self.poses and self.system.joints else ()
 
     def motion(self, name: str, frames: int | None) -> Motion:
         """An arm moves, or the gears do, without the parts around them; see `tol3d.report.motion.Movable`."""
