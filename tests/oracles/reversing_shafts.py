@@ -9,8 +9,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from oracles.screw_flanks import Array, Placed, ScrewGear, lag
 from scipy.spatial.transform import Rotation
+
+from oracles.screw_flanks import Array, Placed, ScrewGear, lag
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Stage:
     def normal(self, side: int) -> Array:
         """Direction of the force on the driven gear by the driver's right (1) or left (-1) flanks.
 
-        Through the pitch point, and across the flank's generator, whose height grows by its tangent with the base helix.
+        Through the pitch point, and across the flank's generators, which lean by the base helix.
         """
         gear, alpha = self.gears[0], self.working_angle
         base_helix = math.atan(gear.twist * gear.base)
