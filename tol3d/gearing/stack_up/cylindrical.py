@@ -119,7 +119,7 @@ class HelicalStack(SpurStack):
         return found
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
-        """As ToothPairs.taken has them, (rows, 4)."""
+        """As ToothPairs.taken has them, (rows, 5)."""
         strain = self._strain(self.mesh.driven, deviations) - self._strain(self.mesh.driver, deviations)
         leans = super()._leans(deviations)
         alpha, half = self.pair.working_pressure_angle, self.pair.common_face / 2
@@ -128,7 +128,8 @@ class HelicalStack(SpurStack):
         found = {}
         for side, lean in leans.items():
             rolls = (apart / math.tan(alpha) + side * aside) / self.pair.centre_distance
-            found[side] = np.stack([lean, strain, rolls, apart / math.sin(alpha)], axis=-1)
+            outwards = apart * math.cos(alpha) + side * aside * math.sin(alpha)
+            found[side] = np.stack([lean, strain, rolls, apart / math.sin(alpha), outwards], axis=-1)
         return found
 
     def lost(self, in_plane: Array, across: Array, driver_angle: Array | None = None) -> Array:

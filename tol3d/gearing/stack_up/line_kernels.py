@@ -69,7 +69,9 @@ class Row(NamedTuple):
         side: 1 if the driver's right flanks touch, -1 if its left ones do.
         roll, mate_roll: of driver and driven at z = 0 [rad].
         lean: loss by tilted axes at the upper end of the face in the pitch point [mm].
-        by_height: change of the driver's and of the driven's roll per height by tilted axes [rad/mm].
+        by_height: change per height by tilted axes of the driver's and of the driven's roll [rad/mm], and of the
+            tangent of both base circles.
+        aside: lean of the driven axis across the line of action, outwards from the driver's.
         strain: of the driven gear less that of the driver.
         up: by how much higher a point's foot lies on the mate than the point [mm]: where a gap is read, or one gear
             stands lower.
@@ -79,7 +81,8 @@ class Row(NamedTuple):
     roll: float
     mate_roll: float
     lean: float
-    by_height: tuple[float, float]
+    by_height: tuple[float, float, float]
+    aside: float
     strain: float
     up: float
 
@@ -114,12 +117,15 @@ def in_slice(
     roll, mate_roll = row.roll + on, row.mate_roll - on * driver.base / driven.base
     along = driver.base * (roll - line.pitch_roll)
     roll, mate_roll = roll + row.by_height[0] * z, mate_roll + row.by_height[1] * z
-    tangent = line.tangent + (driver.base * row.by_height[0] + driven.base * row.by_height[1]) * z
-    flat = LineOfContact(tangent, line.start, line.pitch, 0.0)
+    flat = LineOfContact(line.tangent + row.by_height[2] * z, line.start, line.pitch, 0.0)
     loss = taken_by(driver, driven, flat, flank, mating, (roll, mate_roll), 0.0)
     loss += flank.helix / driver.face * z + mating.helix / driven.face * (z + row.up)
     if row.lean != 0.0:
         loss += row.lean * (z / line.half - row.side * line.fall * along)
+    if row.aside != 0.0:  # an edge beyond the line of action touches where the lean has moved its mate along the axis
+        edge = driver.base * driver.tip * max(roll - driver.tip, 0.0)
+        edge -= driven.base * driven.tip * max(mate_roll - driven.tip, 0.0)
+        loss -= row.side * line.fall * line.half * row.aside * edge
     if row.strain != 0.0:  # base pitches differ: a pair is the later the further it lies from the pitch point
         loss -= row.strain * driver.base * (row.roll - line.pitch_roll)
     return loss
@@ -232,8 +238,12 @@ def take_on_lines(
                     else:  # the foot is not in the slice of its point
                         mate_roll -= (before + line.square * (open_by - before)) / driven.base
                         up = lower + side * line.up * (open_by - before)
-                    by_height = (lean[number, 2], (lean[number, 3] - driver.base * lean[number, 2]) / driven.base)
-                    own = Row(float(side), roll, mate_roll, lean[number, 0], by_height, lean[number, 1], up)
+                    # of the mate's turn there remains in a slice what its lean does not take
+                    leant, by_roll, by_tangent = lean[number, 0], lean[number, 2], lean[number, 3]
+                    mate_roll -= leant * side * line.fall * driver.base * (roll - line.pitch_roll) / driven.base
+                    by_mate = leant / (line.half * line.square) + by_tangent - driver.base * by_roll
+                    by_height = (by_roll, by_mate / driven.base, by_tangent)
+                    own = Row(float(side), roll, mate_roll, leant, by_height, lean[number, 4], lean[number, 1], up)
                     took[k] = most_on_line(driver, driven, shifted, flank, mating, own)
                     moved[k] = min(AGAIN * abs(took[k] - before), FAR)
             most, looks = took.max(), False

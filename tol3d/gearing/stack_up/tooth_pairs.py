@@ -164,8 +164,9 @@ class ToothPairs:
             built: their trials.
             driver_angle: (rows,) [rad].
             lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm]; of helical gears
-                (trials, 4): with the strain of the driven gear less that of the driver, and the changes per height of a
-                tooth's roll on the line of centres [rad/mm] and of the tangent, see _shifts.
+                (trials, 5): with the strain of the driven gear less that of the driver, the changes per height of a
+                tooth's roll on the line of centres [rad/mm] and of the tangent, see _shifts, and the lean of the driven
+                axis across the line of action, outwards from the driver's.
             moved: axes and flanks off their nominal places; None if none is.
             turns: the gear that turns until the side touches; None reads its gap as the gears stand.
             apart: by which the side stands open before [mm], (rows,), where anything but the driven gear turns.
@@ -189,7 +190,7 @@ class ToothPairs:
             (
                 teeth,
                 driver_angle,
-                lean / np.array([cosine, 1.0, 1.0, 1.0]) if first.helix_angle else lean,
+                lean / np.array([cosine, 1.0, 1.0, 1.0, 1.0]) if first.helix_angle else lean,
                 np.zeros(0) if apart is None else apart / cosine,
                 self._shifts(side, moved),
             ),
