@@ -422,7 +422,10 @@ def test_a_steep_helix_and_contact_by_overlap_alone_are_warned_of(tmp_path: Any)
     (path := tmp_path / "steep.yaml").write_text(text("", beta=50, x1=0, x2=0, b1=9, b2=9, a=70.1))
     scene = load(path)
     said = " ".join(map(str, scene.grammar.warnings(scene)))
-    assert "expected a helix_angle of at most 45 deg, got 50 deg" in said
+    assert (
+        "50 deg is steeper than the 45 deg that gears on parallel axes have at most as a rule; simulated as it is"
+        in said
+    )
     assert any("is below 1: contact is kept by the overlap" in own for own in check_scene(scene).model.warnings)
 
 

@@ -62,10 +62,10 @@ def test_the_table_of_backlash_has_the_words_of_drawings(tmp_path: Path) -> None
     base = 61.0 * math.cos(alpha)
     working = math.acos(base / a)
     normal, arc, reference = (rows[symbol] for symbol in ("j_bn", "j_wt", "j_t"))
-    near, far = (math.acos(base / (a + own)) for own in (-0.015, 0.015))
+    near = math.acos(base / (a - 0.015))
     for row, ends in (
         (normal, (1.0, 1.0)),
-        (arc, (1 / math.cos(near), 1 / math.cos(far))),
+        (arc, (1 / math.cos(working), 1 / math.cos(working))),
         (reference, (1 / math.cos(alpha), 1 / math.cos(alpha))),
     ):
         found = (row.least_um, row.largest_um)
@@ -83,7 +83,10 @@ def test_the_table_of_backlash_has_the_words_of_drawings(tmp_path: Path) -> None
 
 
 def test_the_table_of_a_helical_pair(tmp_path: Path) -> None:
-    """A published stage, 23/67, m_n 1, beta 30 deg, c25 and js7: its calculator prints these limits."""
+    """A published stage, 23/67, m_n 1, beta 30 deg, c25 and js7: its calculator prints these limits.
+
+    Its arcs are on the working circles of the least and the largest centre distance.
+    """
     helix = "helix_angle: 30 deg, hand: "
     text = edited(
         PAIR,
@@ -95,7 +98,8 @@ def test_the_table_of_a_helical_pair(tmp_path: Path) -> None:
     )  # fmt: skip
     rows = {own.symbol: own for own in backlash_stages(check_scene(written(text, tmp_path)).model, GearSystem, "exact")}
     assert (rows["j_bn"].least_um, rows["j_bn"].largest_um) == pytest.approx((129.629, 218.071), abs=PRINTED * 2)
-    assert (rows["j_wt"].least_um, rows["j_wt"].largest_um) == pytest.approx((162.427, 273.400), abs=PRINTED * 2)
+    arcs = [own * 53 / (53 + off) for own, off in ((162.427, -0.015), (273.400, 0.015))]
+    assert (rows["j_wt"].least_um, rows["j_wt"].largest_um) == pytest.approx(arcs, abs=PRINTED * 2)
 
 
 def test_stages_add_what_is_stated_of_the_pair() -> None:

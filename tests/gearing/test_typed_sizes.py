@@ -136,7 +136,9 @@ def test_sizes_and_deviations_of_the_same_limits_draw_the_same(part: str, measur
         ("15.489 / 15.517", "15.517 / 15.517", "expected two different limits"),
         ("15.489 / 15.517 mm", "[15.489 mm, 15.517 mm]", "as deviations they are -0.08073/-0.05273 mm, as limits "
          "of the size 15.489 / 15.517 mm"),
-        ("measured: {span: 3}", "measured: normal", "a tooth_thickness of a cylindrical gear, measured: {span: …}, "),
+        ("measured: {span: 3}", "measured: normal", "expected beside limits of a size what is measured, measured: "
+         "{span: 3} (nominal 15.5697 mm), {pins: …} or {balls: …}, got measured: normal (limits of a deviation have"),
+        ("    measured: {pins: 3.5 mm}\n", "", "measured: {span: …}, {pins: …} or {balls: …}, got measured: arc"),
         ("{pins: 3.5 mm}", "{pins: 1 mm}", "pins of 1 mm touch no involute of this gear: choose thicker ones"),
     ],
 )  # fmt: skip

@@ -175,7 +175,11 @@ def test_the_commands_write_reports(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert (tmp_path / "runs" / "door" / "report.html").is_file()
     for word, name in (("csv", "report-csv"), ("xlsx", "report.xlsx"), ("json", "report.json")):
         ended = CliRunner().invoke(app, ["report", "runs/door", "--format", word])
-        assert (ended.exit_code, ended.output.strip()) == (0, name)
+        assert (ended.exit_code, ended.output.strip()) == (0, str(tmp_path / name))
         assert (tmp_path / name).exists()
+    ended = CliRunner().invoke(app, ["report", "runs/door", "--no-3d"])
+    page = tmp_path / "report.html"
+    assert ended.stdout.strip() == str(page)
+    assert ended.stderr.strip().endswith(f"any browser opens it, also without a network: {page.as_uri()}")
     ended = CliRunner().invoke(app, ["report", "runs/door", "--format", "csv", "--no-3d"])
     assert str(ended.exception) == "--no-3d: is of the page; leave it out with --format csv"

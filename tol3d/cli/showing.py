@@ -206,7 +206,9 @@ def report(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of finished runs.")],
     out: Annotated[
         Path | None,
-        typer.Option(help="The file to write; default: report.html, .xlsx or .json, of csv the folder report-csv."),
+        typer.Option(
+            help="The file to write; default: report.html, .xlsx or .json in this folder, of csv the folder report-csv."
+        ),
     ] = None,
     format: Annotated[
         ReportFormatWord,
@@ -242,7 +244,9 @@ def report(
             format=format.value,
             force=force,
         )
-    tell(str(path))
+    tell(str(path.resolve()))
+    if format is ReportFormatWord.HTML:
+        err_console.print(f"any browser opens it, also without a network: {path.resolve().as_uri()}", soft_wrap=True)
 
 
 TrialOption = Annotated[Any, typer.Option(parser=whole(0), metavar="N", help="This trial.")]

@@ -45,7 +45,7 @@ class Backlashes(NamedTuple):
 
     Args:
         normal: shortest distance of the flanks.
-        working: arc on the working pitch circles.
+        working: arc on the working pitch circles of the nominal centre distance.
         reference: arc on the reference circles.
         radial: travel of the gears towards each other until both flanks touch; nan where they never would.
     """
@@ -180,14 +180,17 @@ class CylindricalPair(RollingPair):
         return self.iso_sign * self.base_radii / math.cos(inverse_involute(working)) - self.centre_distance
 
     def from_normal(self, normal: float, further: float = 0.0) -> "Backlashes":
-        """A normal backlash [mm] of other teeth in all the words of drawings, the axes so much further apart [mm]."""
+        """A normal backlash [mm] of other teeth in all the words of drawings, the axes so much further apart [mm].
+
+        The arc is on the working circles of this pair, as the measure `circumferential_backlash` is in every build.
+        """
         distance, transverse = self.centre_distance + further, normal / self.base_helix_cosine
         working = math.acos(self.iso_sign * self.base_radii / distance)
         tight, radial = involute(working) - transverse / (2 * self.base_radii), math.nan
         if tight >= 0.0:
             radial = self.iso_sign * distance - self.base_radii / math.cos(inverse_involute(tight))
         reference = transverse / math.cos(self.pinion.transverse_pressure_angle)
-        return Backlashes(normal, transverse / math.cos(working), reference, radial)
+        return Backlashes(normal, transverse / math.cos(self.working_pressure_angle), reference, radial)
 
     # path of contact ------------------------------------------------------------------------------
 

@@ -39,6 +39,11 @@ class Span:
 
     teeth: int
 
+    @classmethod
+    def nearest(cls, gear: CylindricalGear, size: float) -> "Span":
+        """The span whose nominal size is nearest to one [mm]; of no teeth where that is too small for any."""
+        return cls(1 + max(round((size - cls(1).size(gear)) / (2 * math.pi * gear.section_arm / gear.teeth)), -1))
+
     @property
     def words(self) -> str:
         """Its name."""

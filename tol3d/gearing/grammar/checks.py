@@ -162,8 +162,8 @@ def steep_helices(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Helix angles that nobody cuts for parallel axes."""
     for name, gear in helical_gears(scene).items():
         if gear.helix_angle.internal > STEEPEST_USUAL + ROUNDING:
-            words = f"expected a helix_angle of at most 45 deg, got {gear.helix_angle}"
-            yield ("parts", name, "helix_angle"), f"{words}; check the unit"
+            words = f"{gear.helix_angle} is steeper than the 45 deg that gears on parallel axes have at most as a rule"
+            yield ("parts", name, "helix_angle"), f"{words}; simulated as it is, check the unit"
 
 
 def implausible_displacements(scene: Scene) -> Iterator[tuple[KeyPath, str]]:

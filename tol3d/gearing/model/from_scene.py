@@ -155,9 +155,8 @@ def _another_measure(spec: ToothThicknessSpec, measure: ToothMeasure, gear: Cyli
         return ""
     words = f"expected limits near the nominal {measure.words} of {nominal:.4f} mm, got {text}"
     if isinstance(measure, Span):
-        teeth = measure.teeth + round((middle - nominal) / (2 * math.pi * gear.section_arm / gear.teeth))
-        if teeth != measure.teeth and teeth > 0:
-            other = Span(teeth)
+        other = Span.nearest(gear, middle)
+        if other != measure and other.teeth > 0:
             return f"{words}, which is near the {other.words}, {other.size(gear):.4f} mm; look at k"
     return f"{words}; look at teeth, module and profile shift, and at what the size is over"
 

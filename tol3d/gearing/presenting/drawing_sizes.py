@@ -23,11 +23,12 @@ MEANING = (
 )
 ALLOWANCES: Final = "E_sni, E_sns (A_sni, A_sne)"
 BACKLASH_MEANING: Final = (
-    "j_bn normal, j_wt and j_t as arcs on the working and the reference circles, j_r radial. theoretical: by thickness "
-    "and centre distance; acceptance: by all tolerances but temperature; operating: by all. least, largest: the worst "
-    "of a search among builds within the tolerances, at rest, of gears in a housing by the analytic method; "
-    "mean ∓ 3 σ: by the analytic method at any position, with stated correlations, no further than these; of a "
-    "planetary set one planet's meshes as pairs, at the distance of its pin"
+    "j_bn normal, j_wt and j_t as arcs on the working circles (of the nominal centre distance) and the reference "
+    "circles, j_r radial. theoretical: by thickness and centre distance; acceptance: by all tolerances but "
+    "temperature; operating: by all. least, largest: the worst of a search among builds within the tolerances, at "
+    "rest, of gears in a housing by the analytic method; mean ∓ 3 σ: by the analytic method at any position, with "
+    "stated correlations, no further than these; of a planetary set one planet's meshes as pairs, at the distance of "
+    "its pin"
 )
 
 

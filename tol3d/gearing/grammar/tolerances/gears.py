@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from typing_extensions import override
 
+from tol3d.errors import InputError
 from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
 from tol3d.gearing.grammar.cylindrical import CylindricalSpec, cylindrical_gear_of
 from tol3d.gearing.grammar.parts import (
@@ -33,9 +34,10 @@ from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
 from tol3d.statistics.distributions.derived import Scale
-from tol3d.statistics.distributions.unsized import SIZE
+from tol3d.statistics.distributions.size_limits import sizes_written
+from tol3d.statistics.distributions.unsized import SIZE, UnsizedSpec
 from tol3d.strict import Strict, refused
-from tol3d.units import Dimension
+from tol3d.units import Dimension, Quantity
 
 
 class AlongAxisSpec(GearToleranceSpec):
@@ -231,13 +233,27 @@ class ToothThicknessSpec(GearToleranceSpec):
     @override
     def size(self, standard: str, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> float | None:
         gear = parts.get(self.of)
-        if standard == SIZE and self.over is not None and isinstance(gear, CylindricalSpec):
-            return self.over.size(cylindrical_gear_of(gear))
+        if standard == SIZE and isinstance(gear, CylindricalSpec):
+            drawn = cylindrical_gear_of(gear)
+            if isinstance(self.distribution, UnsizedSpec) and self.over is None:
+                raise InputError(self._unmeasured(drawn, self.distribution.word))
+            return None if self.over is None else self.over.size(drawn)
         if standard != "din_3967" or self.measured != "arc":
             return None
         if not isinstance(gear, ExternalGearSpec | InternalGearSpec):
             return None
         return gear.teeth * gear.module.internal / math.cos(helix_of(gear)[0])
+
+    def _unmeasured(self, gear: CylindricalGear, sizes: str) -> str:
+        """Sentence for limits of a size of which nothing says how it is measured, with the span that they are near."""
+        one, other = sizes_written(sizes) or (Quantity(0.0, "mm"),) * 2
+        span = Span.nearest(gear, (one.internal + other.internal) / 2)
+        usual = 1 < span.teeth <= gear.teeth / 4
+        own = f"{{span: {span.teeth}}} (nominal {span.size(gear):.4f} mm)" if usual else "{span: …}"
+        return (
+            f"expected beside limits of a size what is measured, measured: {own}, {{pins: …}} or "
+            f"{{balls: …}}, got measured: {self.measured} (limits of a deviation have signs, as in -0.03/-0.06 mm)"
+        )
 
     def meaning(self, nominal: Nominal) -> Meaning:
         """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""
