@@ -13,6 +13,7 @@ from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
 from tol3d.gearing.grammar.tolerances.gears import MeasuredOverSpec, ToothThicknessSpec
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.brought import NOTHING, Brought, brought_into, with_shared_shafts
+from tol3d.gearing.model.faces import narrower_faces, refuse_no_common_face
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
 from tol3d.gearing.model.measure import Measure
@@ -232,8 +233,9 @@ def model_from_scene(scene: Scene) -> Model:
     model = replace(model, measures=measures)
     refuse_shared_thrust(scene, model)
     refuse_opposed_loads(scene, model)
+    refuse_no_common_face(scene, model)
     idle = (warned(scene.origin, ("tolerances", name), sentence) for name, sentence in idle_slides(model))
-    return replace(model, warnings=(*model.warnings, *idle))
+    return replace(model, warnings=(*model.warnings, *narrower_faces(model), *idle))
 
 
 def jumping(model: Model, measure: Measure) -> Measure:
