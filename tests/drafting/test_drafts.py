@@ -248,7 +248,9 @@ def test_parts_have_the_names_of_their_products_numbered_where_those_of_their_us
     numbered = re.sub(r"PRODUCT\('[^']*','plate'", "PRODUCT('4711-0815','NONE'", generic)
     assert names_of(numbered, tmp_path)[0] == "4711-0815"
     long = re.sub(r"'plate'", "'Housing, machined, rear axle of the.2nd stage'", generic)
-    assert names_of(long, tmp_path)[0] == "Housing machined rear"
+    assert names_of(long, tmp_path)[0] == "Housing"
+    shared = re.sub(r"PRODUCT\('[^']*','[^']*'", "PRODUCT('a','01_02-rear_wheel_bearing_M6'", generic)
+    assert names_of(shared, tmp_path) == [f"wheel_bearing {k}" for k in range(1, 6)]
 
 
 @pytest.fixture

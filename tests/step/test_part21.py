@@ -151,6 +151,14 @@ def test_an_error_names_its_instance_once() -> None:
         file[file[1].needed("A").reference(0)].needed("C")
 
 
+@pytest.mark.parametrize("entity", ["REPRESENTATION", "DIMENSIONAL_SIZE_WITH_DATUM_FEATURE"])
+def test_a_density_and_a_size_may_name_themselves_where_no_shape_does(entity: str) -> None:
+    """Open CASCADE 6 lists a density's representation among its own items."""
+    assert read(f"#1={entity} ('density',(#1),#2);\n#2=B();")[1].needed(entity).text(0) == "density"
+    with pytest.raises(StepError, match="holds itself"):
+        read(f"#1=SHAPE_{entity}('density',(#1),#2);\n#2=B();")
+
+
 PARSED = ("#1=A(1,", "#1=A(1 ", "#1=A(x)", "#1=(1")
 """Damage that is found where an instance is parsed."""
 

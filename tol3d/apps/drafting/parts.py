@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Final
 
 import numpy as np
@@ -32,6 +33,13 @@ STILL: Final = 1e-12
 MOST_PARTS: Final = 200  # of one scene that a person reads
 MOST_NAMED: Final = 6  # files in a message
 MOST_SIGNS: Final = 24  # of a part's name that a person types
+MOST_WORDS: Final = 2  # of it, beside a number
+STANDARDS: Final = frozenset(("AN", "ANSI", "AS", "ASME", "DIN", "EN", "GB", "ISO", "JIS", "MS", "NAS"))
+"""Short names of standards, whose numbers stand behind them in names of bolts and bearings."""
+TOKEN: Final = re.compile(r"[^\s_.,;()/\\-]+")
+QUALIFIED: Final = re.compile(r"(?<=\w)(?:[,;(]|\s(?:of|for|with|from)\s)")
+"""Begin of what only qualifies a name."""
+NUMBER: Final = re.compile(r"[0-9]{1,3}")
 
 
 @dataclass
@@ -192,26 +200,52 @@ def names_of(every: Sequence[Standing]) -> Iterator[str]:
 
 
 def use_names(file: StepFile) -> dict[str, str]:
-    """A short name of each use, by its path: its own if those of its product differ, else the product's, numbered."""
+    """A short name of each use, by its path: its own if those of its product differ, else the product's.
+
+    Uses of one name, be they of one product or of several, are numbered.
+    """
     named: dict[str, str] = {}
     for part in file.parts:
         uses = [use.path for use in file.uses if use.product == part.body.product]
         own = [path.rpartition("/")[2] for path in uses]
         counted = re.compile(re.escape(part.body.name) + r"(?:_[0-9]+)?")  # numbered for want of names
         told = len({*own}) == len(own) > 1 and not all(map(counted.fullmatch, own))
-        short = shortened(part.name)
-        numbered = [short] if len(uses) == 1 else [f"{short} {k}" for k in range(1, len(uses) + 1)]
-        named |= zip(uses, map(shortened, own) if told else numbered, strict=True)
+        named |= {path: shortened(word if told else part.name) for path, word in zip(uses, own, strict=True)}
+    alike, counts = Counter(named.values()), Counter[str]()
+    for path, name in named.items():
+        counts[name] += 1
+        named[path] = name if alike[name] == 1 else f"{name} {counts[name]}"
     return named
 
 
 def shortened(text: str) -> str:
-    """A name of at most MOST_SIGNS, cut between its words if it has any that early."""
+    """A name of at most MOST_WORDS words and MOST_SIGNS that a person types.
+
+    Longer ones lose what stands behind a comma or a preposition, and codes such as numbers of parts and of standards;
+    of the first words left the last stay, for they name the part, and so does a number at the end.
+
+    >>> shortened("L-BRACKET"), shortened("92196A196_18-8 Stainless Steel Head Screw"), shortened("a-pillow-block 2")
+    ('L-BRACKET', 'Head Screw', 'pillow-block 2')
+    """
     whole = text.replace(".", " ").strip()
-    if len(whole) <= MOST_SIGNS:
+    tokens = list(TOKEN.finditer(whole))
+    words = [own for own in tokens if not is_code(own[0])]
+    if len(whole) <= MOST_SIGNS and len(words) <= MOST_WORDS:
         return whole
-    cut = max(whole.rfind(sign, MOST_SIGNS // 2, MOST_SIGNS + 1) for sign in " _-")
-    return whole[: cut if cut > 0 else MOST_SIGNS].rstrip(" _-")
+    head = QUALIFIED.split(whole, maxsplit=1)[0]
+    runs = [list(run) for coded, run in groupby(TOKEN.finditer(head), lambda own: is_code(own[0])) if not coded]
+    if not runs:
+        return whole[:MOST_SIGNS].rstrip(" _-")
+    number = f" {tokens[-1][0]}" if NUMBER.fullmatch(tokens[-1][0]) else ""
+    last = runs[0][-MOST_WORDS:]
+    starts = [own.start() for own in last if last[-1].end() - own.start() + len(number) <= MOST_SIGNS]
+    start = starts[0] if starts else last[-1].start()
+    return head[start : last[-1].end()][: MOST_SIGNS - len(number)] + number
+
+
+def is_code(token: str) -> bool:
+    """True if a token of a name is no word: it has digits, or is a standard."""
+    return token in STANDARDS or any(sign.isdecimal() for sign in token)
 
 
 def drafted_part(own: Standing, name: str, names: Names, like: DraftedPart | None) -> DraftedPart:

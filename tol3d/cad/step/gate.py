@@ -20,7 +20,9 @@ COVERED = re.compile(r"'(?:[^']|'')*+'|/\*(?:[^*]|\*(?!/))*+\*/|\"[0-9A-Fa-f]*+\
 FOREIGN = re.compile(r"[^A-Za-z0-9_#=(),;.$*+\-\s'!]")
 EXPONENT = re.compile(r"(?<![A-Za-z0-9_.#])[0-9]++(?:\.[0-9]*+)?[eE][-+]?[0-9]++")
 LONG = re.compile(r"[(,+\-\s][0-9]{13,}+(?:\.[0-9]*+)?")
-OF_ITSELF: Final = "DIMENSIONAL_SIZE_WITH_DATUM_FEATURE"  # its dimension is that of itself, by ISO 10303-47
+OF_ITSELF: Final = re.compile(r"(?:DIMENSIONAL_SIZE_WITH_DATUM_FEATURE|REPRESENTATION)\s*\(")
+"""Entities that may name themselves: the first is its own dimension, by ISO 10303-47; the second, which holds no shape,
+is a density as Open CASCADE 6 wrote it."""
 REFERENCE = re.compile(r"#([0-9]++)")
 NO_BRACKETS = re.compile(r"[^()]++")
 OPEN_REFERENCE = re.compile(r"#(?![0-9])")
@@ -98,7 +100,7 @@ def check_references(bare: str, spans: Mapping[int, tuple[int, int]], place: Pla
         for each in named:
             if each not in spans:
                 raise StepError(f"{place(start)}: #{identifier} refers to #{each}, which the file does not have")
-        if identifier in named and bare.startswith(OF_ITSELF, start):
+        if identifier in named and OF_ITSELF.match(bare, start):
             named = [each for each in named if each != identifier]
         if named:
             uses[identifier] = named
