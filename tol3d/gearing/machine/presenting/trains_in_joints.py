@@ -4,7 +4,7 @@ A scene does not tell where in a link a train lies: it is drawn on the axis of i
 the back and, where shafts cross, towards the joint before.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from os.path import commonprefix
