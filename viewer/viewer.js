@@ -500,10 +500,12 @@ class View {
     const { motion } = states[place], moving = of(".moving");
     if (!moving) return;
     const [play, moment, caption, swing] = ['[name="play"]', '[name="moment"]', ".caption", ".swing"].map(of);
-    moving.hidden = !motion;
+    moving.hidden = !motion && !this.told.travels?.length; // a page may ask for it
+    moment.disabled = !motion;
+    play.textContent = this.#playing ? "pause" : "play";
+    if (!motion) [caption, swing].forEach((own) => own.replaceChildren());
     if (!motion) return;
     const frame = this.#frame(states[place]);
-    play.textContent = this.#playing ? "pause" : "play";
     moment.max = motion.captions.length - 1;
     moment.value = frame;
     moment.setAttribute("aria-valuetext", motion.captions[frame]);

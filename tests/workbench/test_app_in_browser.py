@@ -280,6 +280,8 @@ def _opened(app: App, name: str) -> None:
     app.page.wait("document.querySelectorAll('.names span').length > 0")
 
 
+HEADS = 19.4
+"""Pixels of the two sides of the head of an arrow."""
 PLACE = "[...document.querySelectorAll('.names span')].find((own) => own.textContent.startsWith('{}')).place.toArray()"
 """Place of a feature in 3D, in mm."""
 
@@ -302,16 +304,44 @@ def test_sliders_of_joints_move_an_arm_and_its_error_is_an_arrow_at_the_tool(app
     app.told("#build", "change", "trial")
     app.page.wait("document.querySelector('#factor').max === '2'")
     long = "(own => own ? own.getTotalLength() : 0)(document.querySelector('.measured .error'))"
-    number = "document.querySelector('.names .number').textContent"
+    number = "document.querySelector('.names .number i').textContent"
+    arrow = "[...document.querySelectorAll('.names .number i')].at(-1).textContent"
     app.page.wait(f"{number}.startsWith('off up ') && {number}.endsWith(', as it stands')")
-    before = app.page.ask(number), app.page.ask(long)
-    app.told("#factor", "input", 2)
-    assert app.page.ask(number) == before[0]
-    assert app.page.ask(long) > max(3 * before[1], 10.0)
+    found = {}
+    for factor in (0, 2):
+        app.told("#factor", "input", factor)
+        found[factor] = app.page.ask(number), app.page.ask(long), app.page.ask(arrow)
+    assert found[0][0] == found[2][0]
+    times = [float(words.removeprefix("arrow × ")) for _, _, words in found.values()]
+    assert times[0] > 1.0, "it is seen of a build whose deviations are not magnified"
+    assert times[1] >= 100.0
+    # heads have one size; and links turn by more, whose arcs are no lines
+    lengths = [length - HEADS for _, length, _ in found.values()]
+    assert lengths[1] / lengths[0] == pytest.approx(times[1] / times[0], rel=0.15)
     app.told("#factor", "input", 0)
     app.told("#stands select", "change", "")
     app.page.wait(f"!{number}.endsWith(', as it stands')")
     app.told("#build", "change", "nominal")
+    assert app.page.told == []
+
+
+def test_an_arm_goes_through_its_poses_and_stops(app: App) -> None:
+    app.load()
+    _opened(app, "arm.yaml")
+    button, caption = (f"document.querySelector('#stage {own}')" for own in ("[name=play]", ".caption"))
+    assert not app.page.ask("document.querySelector('#stage .moving').hidden")
+    app.page.ask(f"{button}.click()")
+    app.page.wait(f"{caption}.textContent === 'home to up'")
+    assert app.page.ask(f"{button}.textContent") == "pause"
+    last = app.page.ask("document.querySelector('#stage [name=moment]').max")
+    for frame, pose in (("0", "home"), (last, "up")):
+        app.told("#stage [name=moment]", "input", frame)
+        assert app.page.ask(f"{caption}.textContent") == pose
+        assert app.page.ask(f"{button}.textContent") == "play"
+        tool = tool_by_hand(AXES, TOOL, [math.radians(own) for own in ARM_POSES[pose]])
+        assert math.dist(app.page.ask(PLACE.format("link 3.tool")), tool) < 2e-3
+    app.told("#stands select", "change", "home")
+    app.page.wait(f"{caption}.textContent === ''")
     assert app.page.told == []
 
 

@@ -80,18 +80,20 @@ def animate_run(
         raise InputError(f"{path}: there is no folder {path.parent}")
     display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
     require_bodies(display)
-    shown = motion_of(display, motion, frames)
     choose_window(needs_display=False)
+    notes = display.notes
     if path.suffix.lower() == PAGE:
         content = moving_page(run, display, which, motion=motion, frames=frames).encode()
     else:
+        shown = motion_of(display, motion, frames)
+        notes += shown.notes
         values = values_of(run, which, display.label, run.found.measures)
         content = encoded(shown, pictures(shown, display, values), path.suffix.lower())
     try:
         write_whole(path, content)
     except OSError as error:
         raise unwritable(path, error, "choose another file") from None
-    return (*display.notes, *shown.notes)
+    return notes
 
 
 def encoded(motion: Motion, drawn: Iterator[Image.Image], suffix: str) -> bytes:

@@ -11,6 +11,7 @@ import numpy as np
 from tol3d.errors import InputError, Tol3dError
 from tol3d.numerics.arrays import Array
 from tol3d.report import ViewModel, display_build
+from tol3d.report.motion import travels_of
 from tol3d.report.number import measured_text
 from tol3d.report.presenter import Display
 from tol3d.report.shown_unit import shown_unit
@@ -108,6 +109,7 @@ def build_view(
     measure: str = "",
     at: Mapping[str, Array] | None = None,
     standing: Mapping[str, float] = AS_STATED,
+    motion: str = "",
     kept: Mapping[str, ViewModel] = NO_MODELS,
 ) -> tuple[ViewModel, dict[str, Any]]:
     """The nominal build and others, as `viewer.js` shows them.
@@ -121,11 +123,13 @@ def build_view(
         measure: by its name.
         at: positions of all builds, a number each by name; None: their own, the nominal build with those of the first.
         standing: values of coordinates by which parts stand, see `Posable`; none: in the poses that are stated.
+        motion: one of those that parts go through, from the first world on, with the first factor alone; "" for none.
         kept: models by world whose meshes are shared; new ones are added to them.
 
     Returns:
-        the builds; and for JSON what `ViewModel.told` tells, the names of all `worlds`, `measure`, whether it is read
-        in the one that is shown, and `refused`: by the names of builds of `rows` that cannot be shown, why.
+        the builds; and for JSON what `ViewModel.told` tells, the names of all `worlds`, `measured`: whether `measure`
+        is read in the one that is shown or on the way, `travels`: names of motions, and `refused`: by the names of
+        builds of `rows` that cannot be shown, why.
 
     Raises:
         Tol3dError: the nominal build cannot be shown, or there is no such world.
@@ -144,7 +148,10 @@ def build_view(
             others[name] = other, display_build(other, name, magnify=factors[0])
         except Tol3dError as error:
             refused[name] = str(error)
-    worlds = [own for own in nominal.worlds if own.bodies]
+    worlds, travels = [own for own in nominal.worlds if own.bodies], travels_of(nominal)
+    moves = motion if motion in travels and not standing else None
+    if moves:
+        world, factors = worlds[0].name, factors[:1]
     reading = {own.name: own for own in worlds if measure in own.measured}
     if not world and reading:
         first = next((display for _, display in others.values()), nominal)
@@ -152,7 +159,8 @@ def build_view(
         world = max(reading, key=lambda own: (len(reading[own].bodies), its.get(own, 0.0)))
     elif not world and worlds:
         world = max(worlds, key=lambda own: len(own.bodies)).name
-    model, more = kept[world].kept() if world in kept else ViewModel(wanted=world), STANDS if standing else ""
+    model = kept[world].kept(moves) if world in kept else ViewModel(wanted=world, motion=moves)
+    more = STANDS if standing else ""
     model.add(NOMINAL, [(1.0, nominal, _words(NOMINAL, nominal))], _values(build, more))
     for name, (other, display) in others.items():
         displays = _displays(_shown_in(other, world), display, name, rows[name].words, factors)
@@ -161,8 +169,9 @@ def build_view(
         except Tol3dError as error:
             refused[name] = str(error)
     shown = model.told()
-    reads = shown["world"] in reading
-    return model, {**shown, "worlds": [own.name for own in worlds], "measured": reads, "refused": refused}
+    reads = bool(reading) if moves else shown["world"] in reading
+    told = {"worlds": [own.name for own in worlds], "measured": reads, "travels": [*travels], "refused": refused}
+    return model, {**shown, **told}
 
 
 def _standing(simulation: Simulation, values: Mapping[str, float], measure: str) -> Simulation:

@@ -217,6 +217,7 @@ class Questions:
             measure=measure,
             at=at if shares else None,
             standing={str(key): float(own) for key, own in (asked.get("standing") or {}).items()},
+            motion=str(asked.get("motion", "")),
             factors=FACTORS if factor is None else (float(factor),),
         )
 

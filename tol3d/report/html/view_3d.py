@@ -94,7 +94,8 @@ def moving_3d(run: Run, display: Display, which: Which, motion: str | None, fram
 
 def _read(run: Run, which: Which, display: Display) -> Mapping[str, str]:
     """Values of the measures that are read in the worlds of a build, in words."""
-    return values_of(run, which, display.label, dict.fromkeys(name for own in display.worlds for name in own.measured))
+    read = {name for own in display.worlds for name in own.measured}
+    return values_of(run, which, display.label, [name for name in run.found.measures if name in read])
 
 
 def _page(model: ViewModel, draw: Callable[[Path], object], plays: str | None = None) -> Markup:

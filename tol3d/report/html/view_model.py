@@ -140,9 +140,10 @@ class ViewModel:
     frames: int | None = None
     _of_parts: dict[str, list[int]] = field(default_factory=dict, init=False)
 
-    def kept(self) -> "ViewModel":
-        """The same meshes for other builds, which share them as they are added."""
-        found = ViewModel(self.world.name if self.world else self.wanted, self.surfaces, self.parts)
+    def kept(self, motion: str | None = None) -> "ViewModel":
+        """The same meshes for other builds, which share them as they are added, and may have a motion."""
+        world = self.world.name if self.world else self.wanted
+        found = ViewModel(world, self.surfaces, self.parts, motion=motion)
         found._of_parts = self._of_parts
         return found
 

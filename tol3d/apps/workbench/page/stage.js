@@ -6,6 +6,7 @@ import { goTo } from "./text.js";
 const STEPS = 200; // of a slider of positions
 const MANY = 4; // sliders that are shown when they are asked for
 let view = null, running = null, waiting = null, known = {}, chosen = null, scene = "", measure = "";
+let travels = [], moving = false; // names of motions, and whether builds come with theirs
 
 // One question under way, the latest wish wins; a promise of its picture. While a slider is held, a build is asked for
 // with one factor alone.
@@ -34,7 +35,8 @@ function wish(held) {
   const which = $("build").value;
   return {
     ...(which === "trial" ? { trial: Number($("trial").value) || 0 } : { builds: which === "nominal" ? [] : [which] }),
-    ...(held && { factor: Number($("factor").dataset.asked ?? 1) }),
+    ...((held || moving) && { factor: Number($("factor").dataset.asked ?? 1) }),
+    ...(moving && !held && { motion: travels[0] }),
     positions: positions(), standing: standing(), world: $("world").value, known,
   };
 }
@@ -53,6 +55,8 @@ async function show(asked) {
     await view.replace(model, told);
   }
   known = { collection: told.collection, meshes: told.meshes };
+  travels = told.travels;
+  $("travel").textContent = travels[0] ?? "";
   parts(told.parts);
   worlds(told.worlds);
   seen(told.world);
@@ -133,6 +137,11 @@ function positions() { // none of them: those of the trial
   }));
 }
 
+// Builds stand still again: they are asked for otherwise than in the poses of a motion.
+export function still() {
+  moving = false;
+}
+
 // what is lit, and what leads to it --------------------------------------------------------------
 
 function light() {
@@ -171,13 +180,24 @@ $("tree").addEventListener("click", (event) => {
 
 $("build").addEventListener("change", () => {
   $("trial").hidden = $("build").value !== "trial";
+  still();
   tell();
   stage();
 });
 $("factor").addEventListener("input", () => {
   $("factor").dataset.wanted = $("factor").dataset.asked;
 });
-for (const own of ["trial", "world"]) $(own).addEventListener("change", () => stage());
+$("trial").addEventListener("change", () => stage());
+$("world").addEventListener("change", () => {
+  still();
+  stage();
+});
+$("stage").querySelector('[name="play"]').addEventListener("click", async () => {
+  if (moving) return; // the view plays what it has
+  moving = true;
+  await stage();
+  view.play();
+});
 $("lit").addEventListener("change", () => choose(null));
 window.addEventListener("tol3d-acting", light);
 window.addEventListener("tol3d-leave", () => {
@@ -192,6 +212,7 @@ window.addEventListener("tol3d-scene", () => {
   scene = app.scene;
   chosen = null;
   known = {};
+  still();
   sliders();
   stands();
   stage();

@@ -1,6 +1,6 @@
 // Joints and paths: sliders by which parts stand otherwise than in the poses of the scene.
 import { $, app, button } from "./ask.js";
-import { stage } from "./stage.js";
+import { stage, still } from "./stage.js";
 
 let moved = "", playing = false; // of joints all count, of paths the one that was moved
 
@@ -56,6 +56,7 @@ function line(own) {
 
 function move(own, value) {
   moved = own.name;
+  still();
   $("stands").querySelector("select").selectedIndex = -1; // in none of them
   set(own, value);
 }
@@ -70,6 +71,7 @@ function set(own, value) {
 
 function choose(pose) {
   playing = false;
+  still();
   for (const own of app.stands) set(own, own.poses[pose] ?? first(own));
   moved = pose ? app.stands.find((own) => own.unit).name : "";
   stage();
