@@ -120,7 +120,7 @@ def triangle_mesh(body: Body) -> trimesh.Trimesh:
 
 def _files(display: Display, fmt: str, out: Path) -> Iterator[Path]:
     """Write a file a world, or a part; the paths as they are written."""
-    worlds = display.worlds
+    worlds = [world for world in display.worlds if world.bodies]
     parts = file_words(body.name for world in worlds for body in world.bodies)
     names = file_words(world.name for world in worlds)
     for world in worlds:

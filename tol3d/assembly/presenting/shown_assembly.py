@@ -296,12 +296,13 @@ def seen_whole(world: World, frames: Sequence[Mapping[str, Array]]) -> Look:
     return around(every, (every.min(axis=0) + every.max(axis=0)) / 2, *corner(np.array(world.up)))
 
 
-def bodies(placed: Placed, colours: Sequence[str] = COLOURS) -> tuple[Body, ...]:
+def bodies(placed: Placed, colours: Sequence[str] = COLOURS, deflection: float = DEFLECTION) -> tuple[Body, ...]:
     """A body a part: its solid with its features' symbols on it, or these alone where it has none.
 
     Args:
         placed: the parts.
         colours: of them in order, "#RRGGBB"; begun again when there are more parts.
+        deflection: of triangles from the faces of solids [mm].
     """
     assembly, frames = placed.assembly, placed.frames
     places = np.array([frame[:3, 3] for frame in frames.values()])
@@ -318,7 +319,7 @@ def bodies(placed: Placed, colours: Sequence[str] = COLOURS) -> tuple[Body, ...]
             continue
         pose = placed.poses[part.name]
         own_frames = [(own, np.linalg.inv(pose) @ frame) for own, frame in named]
-        body = built_body(part.name, part.solid, pose, colour, deflection=DEFLECTION)
+        body = built_body(part.name, part.solid, pose, colour, deflection=deflection)
         if own_frames:
             details = partial(marks_on_solid, tuple(own_frames), thickness)
             body = replace(body, details=details, features=partial(mark_counts, tuple(own_frames), thickness))

@@ -169,7 +169,8 @@ class ViewModel:
                 continue
             pieces = [(body.name, piece) for body in world.bodies for piece in body.pieces]
             pieces += [(name, body) for name, bodies in world.within.items() for body in bodies]
-            placed = [self._place(piece) for _, piece in pieces]
+            alike = {id(body): "" for bodies in world.within.values() for body in bodies}  # of trains many are
+            placed = [self._place(piece, alike.get(id(piece), piece.name)) for _, piece in pieces]
             shown, parts = shown or world, parts or tuple(_part(name, piece) for name, piece in pieces)
             poses = tuple(_pose(piece, on) for (_, piece), (_, on) in zip(pieces, placed, strict=True))
             names = {label: _place(place) for label, place in {**world.points, **world.marks}.items()}
@@ -206,17 +207,17 @@ class ViewModel:
         captions = tuple(frame.caption for frame in own.frames)
         return ShownMotion("; ".join(own.notes), tuple(moved.tolist()), numbers, captions, stops, own.back)
 
-    def _place(self, body: Body) -> tuple[int, Array]:
-        """Index of a body's mesh, and its pose on the part (4, 4)."""
+    def _place(self, body: Body, like: str) -> tuple[int, Array]:
+        """Index of a body's mesh, or of one that another body of the same key has, and its pose on the part (4, 4)."""
         vertices, triangles = _surface(body)
-        for mesh in self._of_parts.setdefault(body.name, []):
+        for mesh in self._of_parts.setdefault(like, []):
             known, alike = self.surfaces[mesh]
             if known.shape == vertices.shape and np.array_equal(alike, triangles):
                 pose = laid_on(known, vertices)
                 left = vertices - (known @ pose[:3, :3].T + pose[:3, 3])
                 if float(np.abs(left).max()) <= ALIKE * float(np.ptp(vertices, axis=0).max()):
                     return mesh, pose
-        self._of_parts[body.name].append(len(self.surfaces))
+        self._of_parts[like].append(len(self.surfaces))
         self.surfaces.append((np.round(np.asarray(vertices, dtype=np.float64) / GRID) * GRID, triangles))
         return len(self.surfaces) - 1, np.eye(4)
 

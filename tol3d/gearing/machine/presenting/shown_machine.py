@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
@@ -10,16 +10,18 @@ import numpy as np
 from tol3d.assembly.presenting.measured_lines import arrow_factor
 from tol3d.assembly.presenting.shown_assembly import RIGID, Placed, bodies, placed_in
 from tol3d.assembly.presenting.symbols import unnamed
+from tol3d.cad.solids import PosedBody
+from tol3d.cad.solids.posed_gear import ArmBody
 from tol3d.errors import InputError, RunError
 from tol3d.gearing.machine.joined import HIDDEN
 from tol3d.gearing.machine.methods import WorstMeasure
 from tol3d.gearing.machine.presenting.arm_motion import POSES, Arm, arm_motion
-from tol3d.gearing.machine.presenting.trains_in_joints import TrainInJoint, trains_in_joints
+from tol3d.gearing.machine.presenting.trains_in_joints import COARSE, TrainInJoint, trains_in_joints
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.presenting.gear_display import GearDisplay
 from tol3d.gearing.shown.display import require_factor, seated_build
 from tol3d.numerics.arrays import Array
-from tol3d.report.body import MeasuredLine, World
+from tol3d.report.body import Body, MeasuredLine, World
 from tol3d.report.motion import Motion
 from tol3d.report.presenter import View
 from tol3d.study.results.replaying import Replay
@@ -28,6 +30,8 @@ from tol3d.study.system.trials import Trials
 
 COLOURS: Final = ("#9AA7B4", "#BFA58E", "#9DB5A6", "#B4A5BE")
 """Colours of housings and other parts: greyer than those of shafts and their gears."""
+STICK: Final = 1 / 100
+"""Diameter of the stick that stands for a link without a solid in a STEP file, as a fraction of the arm's size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +165,7 @@ def _posed(system: MachineSystem, poses: Mapping[str, Placed], magnify: float) -
     return tuple(
         World(
             pose,
-            bodies(placed, COLOURS),
+            tuple(_with_stick(body, placed) for body in bodies(placed, COLOURS, COARSE)),
             points=placed.points,
             up=system.up,
             features=placed.features,
@@ -181,6 +185,25 @@ def _lines(system: MachineSystem, pose: str, placed: Placed) -> Mapping[str, tup
         if own in found and not measure.any_flank:
             found[measure.name] = found[own]
     return {name: own for name, own in found.items() if not name.startswith(HIDDEN)}
+
+
+def _with_stick(body: Body, placed: Placed) -> Body:
+    """A body that has no solid with a stick through its features for STEP files; others as they are."""
+    return body if body.posed is not None else replace(body, posed=partial(_stick, body.name, placed))
+
+
+def _stick(name: str, placed: Placed) -> PosedBody:
+    """From the part's frame through its features, one after the other along the line that they follow most."""
+    places = np.array([frame[:3, 3] for frame in placed.frames.values()])
+    pose = placed.poses[name]
+    own = [
+        placed.frames[feature.name] for part in placed.assembly.parts if part.name == name for feature in part.features
+    ]
+    points = np.array([(np.linalg.inv(pose) @ frame)[:3, 3] for frame in own] or [np.zeros(3)])
+    along = np.linalg.svd(points - points.mean(axis=0))[2][0]
+    ordered = points[np.argsort(points @ along, kind="stable")]
+    thick = STICK * float(np.linalg.norm(np.ptp(places, axis=0)))
+    return PosedBody(f"{name} (stick)", ArmBody(tuple((x, y, z) for x, y, z in ordered.tolist()), thick), pose)
 
 
 def shown(seen: Replay, label: str, *, magnify: float) -> ShownMachine | ShownParts:

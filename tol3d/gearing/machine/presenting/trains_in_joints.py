@@ -7,7 +7,7 @@ the back and, where shafts cross, towards the joint before.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from os.path import commonprefix
+from itertools import takewhile
 from typing import Final
 
 import numpy as np
@@ -26,7 +26,7 @@ from tol3d.study.system.stated import nominal_build
 from tol3d.study.trials.simulation import Simulation
 
 COARSE: Final = 0.2
-"""mm; deflection of triangles from the faces of gears that are a hundredth of the picture."""
+"""mm; deflection of triangles from faces, far below a pixel of a picture of a whole arm."""
 ONE_LINE: Final = 1e-9
 """Sine of an angle, and mm; shafts that cross by less are parallel."""
 
@@ -114,7 +114,9 @@ def _joined(train: str, bodies: Sequence[Body], into: Array) -> Iterator[Body]:
         by_colour.setdefault(body.colour, []).append(body)
     for colour, alike in by_colour.items():
         surface = _coarse(alike, into)
-        words = commonprefix([body.name for body in alike]).strip() or ", ".join(body.name for body in alike)
+        names = [body.name for body in alike]
+        shared = takewhile(lambda letters: len(set(letters)) == 1, zip(*names, strict=False))
+        words = "".join(letters[0] for letters in shared).strip() or ", ".join(names)
         yield Body(f"{train}: {words}", np.eye(4), partial(_as_made, surface), None, colour)
 
 
