@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from tol3d.report.html.view_model import ViewModel
     from tol3d.report.measure_charts import spanned
     from tol3d.report.measure_table import CONVERTED_ROWS
+    from tol3d.report.motion import travels_of
     from tol3d.report.number import (
         NOTHING,
         given_text,
@@ -67,6 +68,7 @@ _HOMES = {
     "side_by_side": "tol3d.report.declared",
     "spanned": "tol3d.report.measure_charts",
     "tip_mm": "tol3d.report.number",
+    "travels_of": "tol3d.report.motion",
     "value_text": "tol3d.report.number",
     "view_run": "tol3d.report.view",
 }
@@ -95,6 +97,7 @@ __all__ = [
     "side_by_side",
     "spanned",
     "tip_mm",
+    "travels_of",
     "value_text",
     "view_run",
 ]

@@ -1,6 +1,7 @@
 """A motion as moving pictures: drawn off screen frame by frame, written as one file."""
 
 import io
+import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -14,17 +15,17 @@ from tol3d.report.body import Arrow
 from tol3d.report.drawn_solids import (
     EDGE_COLOUR,
     GAP_COLOUR,
+    add_arrow,
     add_body,
     add_dots,
     add_label,
     add_title,
-    arrow,
     look,
     set_background,
 )
 from tol3d.report.error_arrows import NO_VALUES, values_of, with_errors
 from tol3d.report.html.document import moving_page
-from tol3d.report.motion import Motion, Shot, motion_of
+from tol3d.report.motion import Look, Motion, Shot, motion_of
 from tol3d.report.presenter import Display, Which, presenter_of, require_bodies
 from tol3d.report.view import choose_window
 from tol3d.study.runs.atomic_write import write_whole
@@ -43,6 +44,7 @@ SHADES: Final = (1.0, 0.8, 0.6)  # of a part's colour, that a GIF has
 SAMPLED: Final = 5  # frames from which they are chosen
 TITLE_SIZE, CAPTION_SIZE = 8, 11
 NEAREST: Final = 0.1  # of the distance from the eye to the scene: nothing drawn is nearer
+BESIDE: Final = 0.1  # of half the picture's height, from the tip of an arrow to the middle of its name
 MARK_RADIUS: Final = 5.5  # pixels
 
 
@@ -167,7 +169,8 @@ def pictures(motion: Motion, display: Display, values: Mapping[str, str] = NO_VA
         for number in range(len(motion.frames)):
             for place, own in enumerate(actors):
                 _move(plotter, motion, place, number, own)
-            read = [*_read(plotter, arrows.get(motion.frames[number].stop, {}))]
+            shot = _chosen(plotter, motion, 0)
+            read = [*_read(plotter, arrows.get(motion.frames[number].stop, {}), shot.look(number))]
             plotter.render()
             yield Image.fromarray(np.asarray(plotter.screenshot(return_img=True)))
             for actor in read:
@@ -176,13 +179,13 @@ def pictures(motion: Motion, display: Display, values: Mapping[str, str] = NO_VA
         plotter.close()
 
 
-def _read(plotter: pv.Plotter, arrows: Mapping[str, Arrow]) -> Iterator[pv.Actor]:
-    """Draw arrows with their names; what is drawn."""
+def _read(plotter: pv.Plotter, arrows: Mapping[str, Arrow], seen: Look) -> Iterator[pv.Actor]:
+    """Draw arrows with their names above or below their tips, where these leave them free; what is drawn."""
     for name, own in arrows.items():
         assert own.length is not None
-        solid = arrow(own.place, own.direction, own.length)
-        yield plotter.add_mesh(solid, color=GAP_COLOUR, ambient=0.6, reset_camera=False, render=False)
-        yield add_label(plotter, own.place + own.length * own.direction, name, GAP_COLOUR, len(name))
+        yield add_arrow(plotter, own.place, own.direction, own.length)
+        beside = math.copysign(BESIDE * seen.high, own.direction @ seen.up) * seen.up
+        yield add_label(plotter, own.place + own.length * own.direction + beside, name, GAP_COLOUR, len(name))
 
 
 def _chosen(plotter: pv.Plotter, motion: Motion, place: int) -> Shot:

@@ -92,6 +92,13 @@ def arrow(tip_from: Array, direction: Array, length: float) -> pv.PolyData:
     return pv.Arrow(start=tip_from, direction=direction, scale=length, tip_radius=0.09, shaft_radius=0.035)
 
 
+def add_arrow(plotter: pv.Plotter, tip_from: Array, direction: Array, length: float) -> pv.Actor:
+    """An arrow of that length [mm] from a point, lit from everywhere; what is drawn."""
+    solid = arrow(tip_from, direction, length)
+    actor: pv.Actor = plotter.add_mesh(solid, color=GAP_COLOUR, ambient=0.6, reset_camera=False, render=False)
+    return actor
+
+
 def add_dots(plotter: pv.Plotter, name: str, places: Sequence[Array], radius: float, colour: str) -> None:
     """Flat dots of a radius [mm] at points (3,) [mm], in the place of those of that name in the current renderer."""
     plotter.renderer.remove_actor(name, render=False)
@@ -102,7 +109,7 @@ def add_dots(plotter: pv.Plotter, name: str, places: Sequence[Array], radius: fl
 
 def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str, longest: int = LONGEST) -> pv.Actor:
     """A label at a point, of so many letters at most, whatever is in front of it; what is drawn."""
-    return plotter.add_point_labels(
+    actor: pv.Actor = plotter.add_point_labels(
         np.asarray(place)[None],
         [legible(text, longest)],
         text_color="white",
@@ -116,6 +123,7 @@ def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str, longest
         reset_camera=False,
         render=False,
     )
+    return actor
 
 
 def add_names_below(plotter: pv.Plotter, left: str, right: str) -> None:

@@ -22,9 +22,9 @@ from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
     EDGE_COLOUR,
     GAP_COLOUR,
+    add_arrow,
     add_body,
     add_label,
-    arrow,
     look,
     poly_data,
     set_background,
@@ -155,7 +155,7 @@ def draw_whole(
     labels += [Label(name, CONTACT_COLOUR, point) for name, point in {**world.points, **marks}.items()]
     for name, shown in world.arrows.items():
         length = ARROW_SHARE * frame.height if shown.length is None else shown.length
-        plotter.add_mesh(arrow(shown.place, shown.direction, length), color=GAP_COLOUR, ambient=0.6)
+        add_arrow(plotter, shown.place, shown.direction, length)
         labels.append(Label(name, GAP_COLOUR, shown.place + length * shown.direction))
     _look(plotter, eye, frame)
     (_label_beside if plotter.off_screen else _label_in_place)(plotter, Whole(eye, frame, tuple(labels)))

@@ -10,8 +10,7 @@ import numpy as np
 
 from tol3d.errors import InputError, Tol3dError
 from tol3d.numerics.arrays import Array
-from tol3d.report import ViewModel, display_build
-from tol3d.report.motion import travels_of
+from tol3d.report import ViewModel, display_build, travels_of
 from tol3d.report.number import measured_text
 from tol3d.report.presenter import Display
 from tol3d.report.shown_unit import shown_unit

@@ -14,7 +14,7 @@ Frames = Mapping[str, Array]
 """Poses in the world (4, 4), by name."""
 
 
-ARROW: Final = 1 / 12
+ARROW: Final = 1 / 8
 """Fraction of the size of what is shown: least length of the arrow of its largest error."""
 SHORTEST: Final = 1e-6
 """mm; an error that is shorter is rounding."""

@@ -13,9 +13,8 @@ from tol3d.assembly.clearances.prepared import reader_of
 from tol3d.assembly.posed import has_loops
 from tol3d.assembly.system import AssemblySystem, ClearanceSystem, assembly_system
 from tol3d.assembly.zones import laws_told
-from tol3d.gearing.machine.chain import Chain, Joint
 from tol3d.gearing.machine.closed_form import closed_form, with_joints
-from tol3d.gearing.machine.grammar.open_chain import OpenChainSpec
+from tol3d.gearing.machine.grammar.open_chain import OpenChainSpec, turn_name
 from tol3d.gearing.machine.joined import Joined, is_hidden
 from tol3d.gearing.machine.methods import MachineMethod, WorstMeasure
 from tol3d.gearing.machine.open_chains import HALF, JointDrive, loaded_sides, reading_at, with_inputs
@@ -170,20 +169,22 @@ class MachineSystem(Joined):
         )
 
     @property
-    def joints(self) -> tuple[Joint, ...]:
-        """The joints of its chains, in the first pose."""
-        moves = self.drawn.assembly.moves
-        return tuple(joint for move in moves if isinstance(move, Chain) for joint in move.joints)
+    def turns(self) -> Mapping[str, int]:
+        """Columns of the turns of joints beyond their inputs, by joint, of the assembly's deviations."""
+        slices, chains = component_slices(self.drawn), self._chains
+        return {own: slices[turn_name(name, own)].start for name, spec in chains.items() for own in spec.joints}
 
     @property
-    def inputs(self) -> Mapping[str, Sequence[float]]:
-        """Inputs of these joints [rad] in every pose of a chain; a chain that lacks it stands in its first."""
-        chains = self._chains.values()
-        specs = {joint: spec for spec in chains for joint in spec.joints}
-        found = dict[str, Sequence[float]]()
-        for pose in dict.fromkeys(pose for spec in chains for pose in spec.poses):
-            at = [specs[own.name].poses.get(pose, next(iter(specs[own.name].poses.values()))) for own in self.joints]
-            found[pose] = [its[own.name].internal for own, its in zip(self.joints, at, strict=True)]
+    def arm_poses(self) -> tuple[str, ...]:
+        """Poses of its chains."""
+        return tuple(dict.fromkeys(pose for spec in self._chains.values() for pose in spec.poses))
+
+    def inputs_in(self, pose: str) -> Sequence[float]:
+        """Inputs of all joints in a pose [rad], in the order of `turns`; a chain that lacks it stands in its first."""
+        found = list[float]()
+        for spec in self._chains.values():
+            its = spec.poses.get(pose, next(iter(spec.poses.values())))
+            found += [its[joint].internal for joint in spec.joints]
         return found
 
     def standing(self, values: Mapping[str, float], measures: Sequence[str]) -> "MachineSystem":

@@ -208,7 +208,8 @@ def _controls(model: ViewModel) -> Iterator[Markup]:
     options = (tag("option", own.name, value=number) for number, own in enumerate(model.builds))
     states = [state for own in model.builds for state in own.states]
     stops = [own for state in states if state.motion for own in state.motion.stops.values()]
-    measured = dict.fromkeys(name for own in (*states, *stops) for name in own.measured)
+    lines = [*(state.measured for state in states), *(own.measured for own in stops)]
+    measured = dict.fromkeys(name for own in lines for name in own)
     has_errors = any(state.errors for state in states) or any(own.errors for own in stops)
     errors = tag("option", "errors of places", value=ERRORS) if has_errors else None
     measures = (tag("option", name, value=name) for name in measured)

@@ -64,13 +64,13 @@ class Arm:
 
     @cached_property
     def _columns(self) -> Sequence[int]:
-        return [joint.column for joint in self.system.joints]
+        return list(self.system.turns.values())
 
     @cached_property
     def _inputs(self) -> Mapping[str, Array]:
         """Inputs of its joints beyond those of the first pose (joints,) [rad], by pose."""
-        first = np.array([joint.angle for joint in self.system.joints])
-        return {pose: np.array(own) - first for pose, own in self.system.inputs.items()}
+        first = np.array(self.system.inputs_in(next(iter(self.system.poses))))
+        return {pose: np.array(self.system.inputs_in(pose)) - first for pose in self.system.arm_poses}
 
     @cached_property
     def _halves(self) -> Mapping[str, Array]:
@@ -175,7 +175,7 @@ def arm_motion(arm: Arm, frames: int | None) -> Motion:
         RunError: its parts cannot be placed on the way.
     """
     steps = [step for leg in arm.legs(frames) for step in arm.turns(leg)]
-    last = list(arm.system.inputs)[-1]
+    last = arm.system.arm_poses[-1]
     steps.append((last, last, arm.rests(last)))
     every = arm.at([turns for _, _, turns in steps])
     shown = tuple(

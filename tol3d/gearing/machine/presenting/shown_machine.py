@@ -116,7 +116,7 @@ class ShownMachine:
     @property
     def travels(self) -> tuple[str, ...]:
         """That of an arm; see `tol3d.report.motion.Travelling`."""
-        return (POSES,) if self.poses and self.system.joints else ()
+        return (POSES,) if self.poses and self.system.turns else ()
 
     def motion(self, name: str, frames: int | None) -> Motion:
         """An arm moves, or the gears do, without the parts around them; see `tol3d.report.motion.Movable`."""
