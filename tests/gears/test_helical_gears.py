@@ -282,18 +282,59 @@ def test_span_balls_and_pins_are_those_of_sampled_flanks(gear: SpurGear, screw: 
         assert np.abs(scale.deviation(scale.measured(off)) - off).max() < 1e-10
 
 
+@pytest.mark.parametrize("teeth", [23, 24, 67])
+def test_pins_and_balls_need_a_face_as_wide_as_their_contacts_lie_apart(teeth: int) -> None:
+    """By the sampled flanks: heights of both contacts of a ball, and of the space opposite a pin."""
+    gear = helical(teeth, 2.0, 25.0, LEFT_HAND, 30.0, profile_shift=0.1)
+    screw = ScrewGear(teeth, 2.0, ALPHA, math.radians(25.0), -1, 30.0, 0.1)
+    balls = pins_of(gear, OverBalls)
+    assert balls is not None
+    radius = gear.base_radius / math.cos(balls._angle(gear))
+
+    def height(side: int) -> float:
+        """Of the point of a flank of the space about +x that is nearest to the ball, on grids that shrink."""
+        tooth = 0 if side < 0 else 1
+        space = math.pi / teeth
+        first, last = np.array([screw.ends[0], -2.0]), np.array([screw.tip + 1.0, 2.0])
+        for _ in range(14):
+            one, z = (np.linspace(low, high, 41) for low, high in zip(first, last, strict=True))
+            apart = screw.points(one[:, None], z[None, :] + 0 * one[:, None], side, tooth, 0.0)
+            apart = apart - radius * np.array([math.cos(space), math.sin(space), 0.0])
+            i, j = np.unravel_index(np.argmin((apart**2).sum(axis=-1)), (41, 41))
+            reach = (last - first) * 0.2
+            first, last = np.array([one[i], z[j]]) - reach, np.array([one[i], z[j]]) + reach
+        return float(z[j])
+
+    spread = abs(height(1) - height(-1))
+    assert balls.least_face_width(gear) == pytest.approx(spread, abs=1e-4)  # a minimum is flat: 1e-9 mm of distance
+    pins = OverPins(balls.diameter)
+    # spaces stand at (k + 1/2) pitches and go round with the height: the first height of one opposite that at +x
+    pitch, ahead = 2 * math.pi / teeth, math.pi % (2 * math.pi / teeth)
+    heights = [abs(own / screw.twist) for own in (ahead, pitch - ahead)]
+    lowest = min(heights) if min(heights) > 1e-9 else 0.0
+    assert pins.least_face_width(gear) == pytest.approx(spread + lowest, abs=1e-4)
+    for measure in (balls, pins):
+        least = measure.least_face_width(gear)
+        measure.require_reach(replace(gear, face_width=least + 1e-9))
+        words = rf"{measure.bodies} of .* mm touch up to {least:.4f} mm apart along the axis, on a face only"
+        with pytest.raises(GeometryError, match=words):
+            measure.require_reach(replace(gear, face_width=least - 1e-9))
+        again = pins_of(replace(gear, face_width=0.99 * least), type(measure))
+        assert again is None or again.least_face_width(gear) <= 0.99 * least
+
+
 def test_thousand_thicknesses_come_back_from_each_measure() -> None:
-    """Fifty on each of twenty gears, by span, balls and pins; to 1e-10 mm.
+    """Of a thousand gears, by span, balls and pins; to 1e-10 mm.
 
     A span and a tooth along its normals change by cos(alpha_n) of the arc in the normal section, the arc in the
     transverse section by 1/cos(beta) of it.
     """
     rng = np.random.default_rng(54)
-    for gear, _ in random_gears(20):
+    for gear, _ in random_gears(1000):
         span, balls = span_of(gear), pins_of(gear, OverBalls)
         assert span is not None
         assert balls is not None
-        off = gear.module * rng.uniform(-0.04, 0.03, 50)
+        off = gear.module * rng.uniform(-0.04, 0.03, 1)
         made = [replace(gear, tooth_thickness_deviation=gear.tooth_thickness_deviation + own) for own in off.tolist()]
         thick = gear.tooth_thickness + off
         for measure in (span, balls, OverPins(balls.diameter)):
@@ -312,6 +353,20 @@ def test_thousand_thicknesses_come_back_from_each_measure() -> None:
         assert np.abs(transverse * math.cos(gear.helix_angle) - off).max() < 1e-10
         normal = 2 * gear.section_arm * np.array([own.base_half_angle - gear.base_half_angle for own in made])
         assert np.abs(normal / math.cos(gear.pressure_angle) - off).max() < 1e-10
+
+
+def test_thousand_thicknesses_of_rings_come_back_from_balls() -> None:
+    """To 1e-10 mm."""
+    rng = np.random.default_rng(55)
+    for ring, _ in random_rings(1000):
+        balls = pins_of(ring)
+        assert balls is not None
+        off = float(ring.module * rng.uniform(-0.04, 0.03))
+        made = replace(ring, tooth_thickness_deviation=ring.tooth_thickness_deviation + off)
+        assert balls.thickness(ring, balls.size(made)) == pytest.approx(ring.tooth_thickness + off, abs=1e-10)
+        scale = PinScale(ring, balls)
+        measured = np.array([balls.size(made) - balls.size(ring)])
+        assert scale.deviation(measured) == pytest.approx([off], abs=1e-10)
 
 
 def _as_thick(gear: AnyGear, thickness: float) -> AnyGear:

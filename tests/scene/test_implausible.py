@@ -351,9 +351,18 @@ def test_axes_may_lie_off_by_half_of_a_module(
 def test_gears_may_shift_by_their_face_width(warned: Warned) -> None:
     """The wheel of every_field is 16 mm wide; the end of a law that is farther from 0 counts."""
     old = "lower: -0.1 mm, upper: 0.1 mm"
-    found = [warned("every_field", (old, f"lower: {low}, upper: 0.1 mm")) for low in ("-16 mm", "-16.1 mm")]
+    found = [warned("every_field", (old, f"lower: {low}, upper: 15 mm")) for low in ("-16 mm", "-16.1 mm")]
     assert [len(lines) for lines in found] == [0, 1]
     words = "distribution: expected at most 100 % of the face width of 'wheel' (16 mm), got -16.1 mm (100.6 %)"
+    assert words in found[1][0]
+
+
+def test_shafts_may_slide_by_the_face_width_of_their_narrowest_gear(warned: Warned) -> None:
+    """The second wheel of helical_gearbox is 74 mm wide."""
+    old = "of: output, distribution: {kind: uniform, lower: 40 um, upper: 90 um}"
+    found = [warned("helical_gearbox", (old, old.replace("90 um", size))) for size in ("74 mm", "90 mm")]
+    assert [len(lines) for lines in found] == [0, 1]
+    words = "distribution: expected at most 100 % of the face width of 'second wheel' (74 mm), got 90 mm (121.6 %)"
     assert words in found[1][0]
 
 

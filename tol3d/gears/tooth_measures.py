@@ -106,6 +106,7 @@ class OverPins:
     diameter: float
 
     bodies: ClassVar[str] = "pins"
+    shorter: ClassVar[str] = "balls, or a smaller diameter"
 
     @property
     def words(self) -> str:
@@ -138,6 +139,14 @@ class OverPins:
         half = involute(math.acos(gear.base_radius / centre)) - gear.iso_sign * self._turn(gear)
         return _thickness(gear, math.pi / gear.teeth + half if gear.iso_sign > 0 else half)
 
+    def least_face_width(self, gear: CylindricalGear) -> float:
+        """Face width [mm] that holds all contacts: a pin or ball touches both flanks D_M sin beta_b apart.
+
+        Between parallel anvils straight pins over an odd number of helical teeth lie half an axial pitch apart.
+        """
+        apart = math.pi / (gear.teeth * abs(gear.twist)) if self.opposite(gear) != _opposite(gear) else 0.0
+        return apart + self.diameter * math.sin(gear.base_helix_angle)
+
     def touches_at(self, gear: CylindricalGear) -> float:
         """Radius [mm] at which a pin touches both flanks of its space; if below the base circle, it touches none.
 
@@ -163,6 +172,9 @@ class OverPins:
         in_root = sign * (centre - sign * self.diameter / 2 - gear.root_radius) < 0.0
         stands_out = sign * (centre + sign * self.diameter / 2 - gear.tip_radius) > 0.0
         if _on_flank(gear, self.touches_at(gear)) and stands_out and not in_root:
+            if (least := self.least_face_width(gear)) > gear.face_width:
+                words = f"touch up to {least:.4f} mm apart along the axis, on a face only {gear.face_width:g} mm wide"
+                raise GeometryError(f"{self.bodies} of {self.diameter:g} mm {words}: choose {self.shorter}{advice}")
             return
         why = (
             f"touch at a diameter of {2 * self.touches_at(gear):.4f} mm, outside the involute ({_flank_words(gear)})"
@@ -197,6 +209,7 @@ class OverBalls(OverPins):
     """
 
     bodies: ClassVar[str] = "balls"
+    shorter: ClassVar[str] = "a smaller diameter"
 
     def opposite(self, gear: CylindricalGear) -> float:
         """Distance of the centres over their diameter: 1, or cos(pi/(2 z)) for an odd number of teeth."""
@@ -330,6 +343,7 @@ def _is_possible(gear: CylindricalGear, pins: OverPins) -> bool:
         _on_flank(gear, pins.touches_at(gear))
         and sign * (centre + sign * pins.diameter / 2 - gear.tip_radius) > 0.0
         and sign * (centre - sign * pins.diameter / 2 - gear.root_radius) >= 0.0
+        and pins.least_face_width(gear) <= gear.face_width
     )
 
 

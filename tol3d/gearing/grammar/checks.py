@@ -181,18 +181,18 @@ def implausible_displacements(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 
 def implausible_faces(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
-    """Faces of gears as thin as foil or wider than a metre; gears that a shift takes beyond their own face."""
+    """Faces of gears as thin as foil or wider than a metre; shifts and plays of gears beyond their own face."""
     for name, gear in scene.of(GearSpec).items():
         if gear.face_width.internal > WIDEST_FACE + ROUNDING:
             yield ("parts", name, "face_width"), f"expected at most 1 m, got {gear.face_width}; check the unit"
         if gear.face_width.internal < (least := NARROWEST_FACE * gear.module.internal) - ROUNDING:
             words = f"expected at least {least:.4g} mm, a tenth of the module, got {gear.face_width}"
             yield ("parts", name, "face_width"), f"{words}; check the unit"
-    for name, spec in scene.of(AxialShiftSpec).items():
+    for name, spec in {**scene.of(AxialShiftSpec), **scene.of(AxialPlaySpec)}.items():
         far = larger_end(spec.distribution.resolve(scene.files))
         widths = {
             gear: part.face_width.internal
-            for gear in gears_on(spec.of, scene.parts)
+            for gear in gears_on(shaft_at(spec.of, scene.parts), scene.parts)
             if isinstance(part := scene.parts[gear], GearSpec)
         }
         for narrowest in sorted(widths, key=widths.__getitem__)[:1]:

@@ -114,9 +114,10 @@ def _measures(gear: SpurGear | InternalGear, stated: Sequence[ToothMeasure]) -> 
 
 
 def _chosen_pins(gear: SpurGear | InternalGear) -> Iterator[ToothMeasure | None]:
-    """Pins, and balls where they give another size: over an odd number of helical teeth."""
+    """Pins, and balls where they give another size, over an odd number of helical teeth, or pins need a wider face."""
     yield (pins := pins_of(gear))
-    if pins is not None and (balls := OverBalls(pins.diameter)).opposite(gear) != pins.opposite(gear):
+    balls = pins_of(gear, OverBalls) if pins is None else OverBalls(pins.diameter)
+    if balls is not None and (pins is None or balls.opposite(gear) != pins.opposite(gear)):
         yield balls
 
 
