@@ -1,6 +1,7 @@
 """Assemblies whose parts stand in other files, as Open CASCADE writes them: read from their own folder alone."""
 
 import contextlib
+import re
 import shutil
 from pathlib import Path
 
@@ -98,7 +99,14 @@ def test_missing_files_are_listed_and_the_rest_is_drafted(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize(
     "name",
-    ["../part_plate.stp", "/etc/hostname", "parts/part_plate.stp", "C:plate.stp", "https://a.example/p.stp", ".."],
+    [
+        "../part_plate.stp",
+        "/etc/hostname",
+        "parts/../../part_plate.stp",
+        "C:plate.stp",
+        "https://a.example/p.stp",
+        "..",
+    ],
 )
 def test_names_that_lead_out_of_the_folder_are_refused(name: str, tmp_path: Path) -> None:
     folder = tmp_path / "inner"
@@ -120,6 +128,59 @@ def test_a_link_out_of_the_folder_is_not_followed(tmp_path: Path) -> None:
     _, missing = with_other_files([read_file(path)])
     assert list(missing) == ["part_plate.stp"]
     assert "a link that leads out of" in missing["part_plate.stp"]
+
+
+def test_parts_in_files_of_one_product_name_have_those_of_the_assembly(tmp_path: Path) -> None:
+    path = parted(tmp_path)
+    for name in ("plate", "bolt"):
+        file = tmp_path / f"part_{name}.stp"
+        file.write_text(re.sub(r"PRODUCT\('[^']*','[^']*'", "PRODUCT('MASTER','MASTER'", file.read_text()))
+    text, _ = scene_from([read_file(path)])
+    assert list(yaml.safe_load(text)["parts"]) == ["plate", "bolt 1", "bolt 2"]
+
+
+@pytest.mark.parametrize(
+    "name", ["sub/bolts/part_bolt.stp", r"sub\\bolts\\part_bolt.stp", "./sub/./bolts/part_bolt.stp"]
+)
+def test_a_part_in_a_folder_below_is_drafted_as_one_beside_the_assembly(name: str, tmp_path: Path) -> None:
+    path, folder = parted(tmp_path), tmp_path / "sub" / "bolts"
+    plain, _ = scene_from([read_file(path)])
+    folder.mkdir(parents=True)
+    shutil.move(tmp_path / "part_bolt.stp", folder)
+    below, _ = scene_from([renamed(path, "part_bolt.stp", name)])
+    assert below == plain.replace("file: part_bolt.stp", 'file: "sub/bolts/part_bolt.stp"')
+    both, _ = scene_from([read_file(path), read_file(folder / "part_bolt.stp")])
+    assert both == below
+
+
+def test_files_are_named_from_the_folder_of_the_one_that_names_them_and_copied_into_the_same(
+    tmp_path: Path, tol3d: Command
+) -> None:
+    """The bolts of the assembly are a sub-assembly of a plate and two bolts, whose bolts lie in a folder below it."""
+    whole, sub = tmp_path / "from", tmp_path / "from" / "sub"
+    (sub / "bolts").mkdir(parents=True)
+    path = parted(whole)
+    shutil.move(whole / "part_bolt.stp", sub / "bolts")
+    shutil.copy(path, sub)
+    renamed(sub / "all.stp", "part_bolt.stp", "bolts/part_bolt.stp")
+    renamed(sub / "all.stp", "part_plate.stp", "../part_plate.stp")
+    renamed(path, "part_bolt.stp", "sub/all.stp")
+    tol3d("new", "--from", str(path), "--out", str(tmp_path / "to" / "draft.yaml"))
+    made = {own.relative_to(tmp_path / "to").as_posix() for own in (tmp_path / "to").rglob("*.stp")}
+    assert made == {"all.stp", "part_plate.stp", "sub/all.stp", "sub/bolts/part_bolt.stp"}
+    text = (tmp_path / "to" / "draft.yaml").read_text()
+    assert [own["file"] for own in yaml.safe_load(text)["parts"].values()] == [
+        "part_plate.stp", *["part_plate.stp", "sub/bolts/part_bolt.stp", "sub/bolts/part_bolt.stp"] * 2,
+    ]  # fmt: skip
+    assembled(text, tmp_path / "to")
+    shutil.move(whole / "part_plate.stp", tmp_path / "part_plate.stp")
+    renamed(sub / "all.stp", "../part_plate.stp", "../../part_plate.stp")
+    with pytest.raises(StepError, match=r"stands in '../../part_plate.stp': expected the name of a file in its own"):
+        scene_from([read_file(path)])
+    renamed(sub / "all.stp", "../../part_plate.stp", "plate.stp")
+    (sub / "plate.stp").symlink_to(tmp_path / "part_plate.stp")
+    _, missing = with_other_files([read_file(path)])
+    assert "a link that leads out of" in missing["sub/plate.stp"]
 
 
 def test_assemblies_that_hold_each_other_are_refused(tmp_path: Path) -> None:

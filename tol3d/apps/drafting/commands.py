@@ -100,8 +100,8 @@ def _draft(
     _refuse_there(target, force)
     laid = [Seat(*own) for own in zip(seats, faces, strict=True)]
     with err_console.status(f"reading {', '.join(names)}") as status:
-        contents, _ = with_other_files(contents)
-        copies = [(target.parent / own.path.name, own.content) for own in contents]
+        files, _ = with_other_files(contents)
+        copies = [(target.parent / name, own.content) for name, own in files.items()]
         for path, content in copies:
             if path.exists() and path.read_bytes() != content:
                 raise InputError(f"{path}: another file of that name lies beside the scene; --out names another folder")

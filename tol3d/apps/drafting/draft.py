@@ -17,7 +17,7 @@ from tol3d.apps.drafting.entry import Entry, Scene, Wording
 from tol3d.apps.drafting.features import faces_of
 from tol3d.apps.drafting.fixture import fixture
 from tol3d.apps.drafting.measured import MOST_MEASURES, Candidate, Key, apart, between, ranked
-from tol3d.apps.drafting.other_files import roots, with_other_files
+from tol3d.apps.drafting.other_files import name_of, roots, with_other_files
 from tol3d.apps.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
 from tol3d.apps.drafting.touching_faces import ALONE, Contacts, moves
 from tol3d.apps.drafting.words import Names, cleaned, comment, length, scalar
@@ -73,7 +73,7 @@ class Draft:
 
     def head(self) -> list[str]:
         """Heading of the scene."""
-        files = [shown(file.name) for file in roots([own.file for own in self.files])]
+        files = [shown(name) for name in roots({own.name: own.file for own in self.files})]
         name = cleaned(" and ".join(file.rpartition(".")[0] or file for file in files), "/\\:") or "from STEP"
         return [
             f"# Drafted by tol3d new --from {comment(' '.join(files))}; yours to edit. What the files do not say is",
@@ -97,9 +97,10 @@ class Draft:
 
     def parts_left(self) -> Iterator[str]:
         """Parts whose files are missing."""
-        for own in (each for read_text in self.files for each in read_text.file.elsewhere):
-            if own.file in self.missing:
-                yield f"{comment(own.use.path)}: {comment(own.file)}: {comment(self.missing[own.file])}"
+        for read_text in self.files:
+            for own in read_text.file.elsewhere:
+                if (name := name_of(own.file, read_text.name)) in self.missing:
+                    yield f"{comment(own.use.path)}: {comment(name)}: {comment(self.missing[name])}"
 
     def features_left(self) -> Iterator[str]:
         """Counterbores, countersinks, slots, tabs and patterns of which the scene has no surface."""
@@ -156,7 +157,7 @@ class Draft:
         left += unread(own, "tolerance")
         count = len(own.text.tolerances) + len(unread(own, "tolerance"))
         said = count - len(lost) - len(left)
-        name = comment(own.file.content.path.name)
+        name = comment(own.name)
         if count:
             yield from ("", f"# Of the {count} tolerances in {name} {said} are said, {len(lost)} approximately, "
                         f"{len(left)} left out.")  # fmt: skip
@@ -250,8 +251,8 @@ def draft(
     Raises:
         InputError: a file cannot be read, or a seat is of no part or face.
     """
-    contents, missing = with_other_files(contents)
-    files = read_files(contents)
+    named, missing = with_other_files(contents)
+    files = read_files(named)
     names = Names()
     parts = list(drafted_parts(files, names))
     for part in parts:
@@ -446,7 +447,9 @@ def scene_from(
     with tempfile.TemporaryDirectory(prefix="tol3d-new-") as made:
         folder = Path(made)
         for file in drafted.files:
-            (folder / file.file.name).write_bytes(file.file.content.content)
+            path = folder / file.name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(file.file.content.content)
 
         def check(text: str) -> None:
             (folder / SCENE).write_text(text, encoding="utf-8")

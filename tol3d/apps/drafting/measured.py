@@ -102,7 +102,7 @@ def ordered(own: Coaxial) -> tuple[DraftedPart, DraftedPart, str, FoundFeature, 
 
 def product(part: DraftedPart) -> str:
     """The product of a part, whichever use it is."""
-    return f"{part.file.content.path.name} {part.features.part.body.product}"
+    return f"{part.file_name} {part.features.part.body.product}"
 
 
 def gap(

@@ -12,7 +12,7 @@ import numpy as np
 from tol3d.apps.drafting.drawing import Drawing
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.features import Features
-from tol3d.apps.drafting.other_files import roots
+from tol3d.apps.drafting.other_files import name_of, roots
 from tol3d.apps.drafting.words import Names, across, comment, direction, place, scalar
 from tol3d.cad.step import (
     FoundFeature,
@@ -26,7 +26,8 @@ from tol3d.cad.step import (
     shown,
     surfaces_of,
 )
-from tol3d.files import FileContent
+from tol3d.cad.step.structure import UNNAMED
+from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 
 STILL: Final = 1e-12
@@ -37,7 +38,7 @@ MOST_WORDS: Final = 2  # of it, beside a number
 STANDARDS: Final = frozenset(("AN", "ANSI", "AS", "ASME", "DIN", "EN", "GB", "ISO", "JIS", "MS", "NAS"))
 """Short names of standards, whose numbers stand behind them in names of bolts and bearings."""
 TOKEN: Final = re.compile(r"[^\s_.,;()/\\-]+")
-QUALIFIED: Final = re.compile(r"(?<=\w)(?:[,;(]|\s(?:of|for|with|from)\s)")
+QUALIFIED: Final = re.compile(r"(?<=\w)(?:\s*[,;(]|\s(?:of|for|with|from)\s)")
 """Begin of what only qualifies a name."""
 NUMBER: Final = re.compile(r"[0-9]{1,3}")
 
@@ -49,6 +50,7 @@ class DraftedPart:
     Args:
         name: in the scene.
         file: that it is from.
+        file_name: that of the file in the scene.
         selection: how the scene names it in its file, as YAML; "" where that has only one.
         pose: in the world (4, 4) [mm].
         by_file: True if the file states it, False if the scene does.
@@ -60,6 +62,7 @@ class DraftedPart:
 
     name: str
     file: StepFile
+    file_name: str
     selection: str
     pose: Array
     by_file: bool
@@ -86,7 +89,7 @@ class DraftedPart:
 
     def entry(self) -> Entry:
         """The part as an entry, with the features that are selected by now."""
-        lines = ["kind: step", f"file: {scalar(self.file.content.path.name)}"]
+        lines = ["kind: step", f"file: {scalar(self.file_name)}"]
         if self.selection:
             lines.append(self.selection)
         if self.like:
@@ -108,23 +111,24 @@ class DraftedPart:
 
 @dataclass(frozen=True)
 class ReadText:
-    """A file with its text."""
+    """A file with its text, and the name that the scene gives it."""
 
+    name: str
     file: StepFile
     text: StepText
     meanings: Meanings
 
 
-def read_files(contents: Sequence[FileContent]) -> tuple[ReadText, ...]:
+def read_files(contents: Files) -> tuple[ReadText, ...]:
     """Files as they are read, text and geometry.
 
     Raises:
         StepError: one cannot be read.
     """
     found = []
-    for content in contents:
+    for name, content in contents.items():
         text = read_step_text(content.content, content.path.name)
-        found.append(ReadText(read_step(content), text, Meanings(text, surfaces_of(text))))
+        found.append(ReadText(name, read_step(content), text, Meanings(text, surfaces_of(text))))
     return tuple(found)
 
 
@@ -137,12 +141,14 @@ class Standing:
         use: in that file.
         pose: in the world (4, 4) [mm].
         by_file: True if that file states the pose.
+        called: name of its product in the assembly that refers to that file, if it is the only part there; else "".
     """
 
     file: ReadText
     use: Use
     pose: Array
     by_file: bool
+    called: str = ""
 
 
 def standing(files: Sequence[ReadText]) -> Iterator[Standing]:
@@ -151,19 +157,20 @@ def standing(files: Sequence[ReadText]) -> Iterator[Standing]:
     Raises:
         StepError: there are too many.
     """
-    by_name = {own.file.name: own for own in files}
-    tops = roots([own.file for own in files])
-    waiting = [(own, np.eye(4), True) for own in files if own.file in tops]
+    by_name = {own.name: own for own in files}
+    waiting = [(by_name[name], np.eye(4), "", True) for name in roots({own.name: own.file for own in files})]
     count = 0
     while waiting:
-        read_text, pose, top = waiting.pop(0)
+        read_text, pose, called, top = waiting.pop(0)
         single = len(read_text.file.uses) == 1 and not read_text.file.elsewhere
         for use in read_text.file.uses:
             own_pose = pose if single else pose @ posed(use)
-            yield Standing(read_text, use, own_pose, top and not single)
-        inner = [(by_name[own.file], pose @ posed(own.use), False) for own in read_text.file.elsewhere
-                 if own.file in by_name]  # fmt: skip
-        waiting[:0] = inner
+            yield Standing(read_text, use, own_pose, top and not single, called if single else "")
+        waiting[:0] = [
+            (by_name[name], pose @ posed(own.use), "" if own.name == UNNAMED else own.name, False)
+            for own in read_text.file.elsewhere
+            if (name := name_of(own.file, read_text.name)) in by_name
+        ]
         count += max(1, len(read_text.file.uses))  # empty assemblies may be used often too
         if count + len(waiting) > MOST_PARTS:
             raise StepError(f"expected at most {MOST_PARTS} parts in a scene, got {count + len(waiting)}")
@@ -181,40 +188,31 @@ def drafted_parts(files: Sequence[ReadText], names: Names) -> Iterator[DraftedPa
         raise StepError(f"{files[0].file.name}: its parts stand in files that are not in its folder: {lacking}")
     first: dict[tuple[str, int], DraftedPart] = {}
     for own, wish in zip(every, names_of(every), strict=True):
-        key = own.file.file.name, own.use.product
+        key = own.file.name, own.use.product
         made = drafted_part(own, names.new(wish, "part"), names, first.get(key))
         first.setdefault(key, made)
         yield made
 
 
 def names_of(every: Sequence[Standing]) -> Iterator[str]:
-    """A short name of each part: that of its use in its file, numbered where other files place that several times."""
-    uses = Counter((own.file.file.name, own.use.path) for own in every)
-    counts: Counter[tuple[str, str]] = Counter()
-    wishes = {own.file.file.name: use_names(own.file.file) for own in every}
-    for own in every:
-        key = own.file.file.name, own.use.path
-        counts[key] += 1
-        wish = wishes[key[0]][key[1]]
-        yield wish if uses[key] == 1 else f"{wish} {counts[key]}"
+    """A short name of each part; those of one name, be they of one product or of several, are numbered."""
+    words = {own.file.name: use_words(own.file.file) for own in every}
+    names = [shortened(own.called or words[own.file.name][own.use.path]) for own in every]
+    alike, counts = Counter(names), Counter[str]()
+    for name in names:
+        counts[name] += 1
+        yield name if alike[name] == 1 else f"{name} {counts[name]}"
 
 
-def use_names(file: StepFile) -> dict[str, str]:
-    """A short name of each use, by its path: its own if those of its product differ, else the product's.
-
-    Uses of one name, be they of one product or of several, are numbered.
-    """
+def use_words(file: StepFile) -> dict[str, str]:
+    """Name of each use in a file, by its path: its own if those of its product differ, else the product's."""
     named: dict[str, str] = {}
     for part in file.parts:
         uses = [use.path for use in file.uses if use.product == part.body.product]
         own = [path.rpartition("/")[2] for path in uses]
         counted = re.compile(re.escape(part.body.name) + r"(?:_[0-9]+)?")  # numbered for want of names
         told = len({*own}) == len(own) > 1 and not all(map(counted.fullmatch, own))
-        named |= {path: shortened(word if told else part.name) for path, word in zip(uses, own, strict=True)}
-    alike, counts = Counter(named.values()), Counter[str]()
-    for path, name in named.items():
-        counts[name] += 1
-        named[path] = name if alike[name] == 1 else f"{name} {counts[name]}"
+        named |= {path: word if told else part.name for path, word in zip(uses, own, strict=True)}
     return named
 
 
@@ -259,7 +257,9 @@ def drafted_part(own: Standing, name: str, names: Names, like: DraftedPart | Non
         selection = f"product: {scalar(part.name)}"
     drawing = like.drawing if like is not None else Drawing(read_text.text, read_text.meanings, name, features, names)
     like_name = "" if like is None else like.name
-    return DraftedPart(name, read_text.file, selection, own.pose, own.by_file, features, drawing, like_name)
+    return DraftedPart(
+        name, read_text.file, read_text.name, selection, own.pose, own.by_file, features, drawing, like_name
+    )
 
 
 def posed(use: Use) -> Array:

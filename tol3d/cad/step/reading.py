@@ -104,10 +104,17 @@ class Use:
 
 @dataclass(frozen=True)
 class PartElsewhere:
-    """A part whose shape stands in another file: the use here, and the name of that file as this one states it."""
+    """A part whose shape stands in another file.
+
+    Args:
+        use: here.
+        file: as this file states it.
+        name: of the product here.
+    """
 
     use: Use
     file: str
+    name: str
 
 
 @dataclass(frozen=True)
@@ -304,7 +311,8 @@ def read_step(content: FileContent) -> StepFile:
         text = read_step_text(content.content, content.path.name)
         structure = text.structure
         elsewhere = tuple(
-            PartElsewhere(_used(leaf), structure.elsewhere[leaf.product]) for leaf in structure.leaves_elsewhere
+            PartElsewhere(_used(leaf), structure.elsewhere[leaf.product], structure.products[leaf.product].name)
+            for leaf in structure.leaves_elsewhere
         )
         if elsewhere and not structure.leaves:
             return _kept(ReadFile((), (), layers_of(text.file), elsewhere))
