@@ -88,13 +88,14 @@ class _Tube:
         ends: tuple[tuple[End, Array], ...] = (proximal, along), (distal, -along)
         most = [_widest(own, out, apart) for own, out in ends]
         radii = [min(BODY_SHARE * own, *most) if diameter is None else diameter / 2 for own in most]
-        for (own, out), radius, largest in zip(ends, radii, most, strict=True):
+        for (own, out), largest in zip(ends, most, strict=True):
             if largest - wall < LEAST_WALL and float(out @ np.array(own.inwards)) < 0.0:
                 word = "seat" if isinstance(own, Proximal) else "flange" if own.bore is None else "mouth of its bore"
                 raise GeometryError(
                     f"the other joint lies before the {_word(own)} drum of the link: its body would leave the drum "
                     f"through the {word}"
                 )
+        for (own, _), radius, largest in zip(ends, radii, most, strict=True):
             if not wall + LEAST_WALL <= radius <= largest:
                 raise GeometryError(
                     f"a body of {2 * radius:.4g} mm does not fit the {_word(own)} drum of the link, which has room for "

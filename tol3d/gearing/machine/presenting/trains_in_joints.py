@@ -5,7 +5,7 @@ the back and, where shafts cross, towards the joint before.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import takewhile
 from typing import Final
@@ -17,10 +17,11 @@ from tol3d.assembly.presenting.shown_assembly import Placed
 from tol3d.cad.solids import display_mesh
 from tol3d.gearing.machine.grammar.open_chain import OpenChainSpec
 from tol3d.gearing.machine.system import MachineSystem
+from tol3d.gearing.model import Model
 from tol3d.gearing.presenting.shown_train import shown_build
 from tol3d.gearing.shown.display import seated_build
 from tol3d.numerics.arrays import Array
-from tol3d.report.body import Body, Surface
+from tol3d.report.body import Body, Surface, World
 from tol3d.study.results.replaying import replayed
 from tol3d.study.system.stated import nominal_build
 from tol3d.study.trials.simulation import Simulation
@@ -88,9 +89,8 @@ def trains_in_joints(simulation: Simulation) -> tuple[TrainInJoint, ...]:
     if not joints:
         return ()
     display = shown_build(seated_build(replayed(simulation, nominal_build(system)), "nominal"))
-    worlds = {world.name: world.bodies for world in display.worlds}
-    layout = system.gears.model.layout
-    trains = {own.name: own for own in system.gears.model.trains}
+    model = system.gears.model
+    layout, trains = model.layout, {own.name: own for own in model.trains}
     found = []
     for name, axis in joints:
         train = trains[name]
@@ -98,13 +98,25 @@ def trains_in_joints(simulation: Simulation) -> tuple[TrainInJoint, ...]:
         into = np.linalg.inv(output)
         if (into @ first)[2, 3] > ONE_LINE:
             into = np.diag([1.0, -1.0, -1.0, 1.0]) @ into
-        bodies = tuple(_joined(name, worlds.get(layout.root_of[train.output], ()), into))
+        bodies = tuple(_joined(name, list(_parts(display.worlds, model, layout.root_of[train.output])), into))
         if bodies:
             crossing = np.linalg.norm(np.cross(output[:3, 2], first[:3, 2])) > ONE_LINE
             towards = (into @ first)[:3, 3] * (1.0, 1.0, 0.0) if crossing else np.zeros(3)
             behind = max(float(body.surface()[0][:, 2].max()) for body in bodies)
             found.append(TrainInJoint(name, axis, bodies, towards, behind))
     return tuple(found)
+
+
+def _parts(worlds: Sequence[World], model: Model, root: str) -> Iterator[Body]:
+    """Bodies of the train of a first shaft, in its world; single pairs have a world a mesh."""
+    for world in worlds:
+        if world.name == root:
+            yield from world.bodies
+        elif world.name in model.layout.world_from_mesh:
+            driver = model.layout.carrying[model.mesh(world.name).driver][0]
+            if model.layout.root_of[driver] == root:
+                into = model.layout.world_from_mesh[world.name]
+                yield from (replace(body, world_from_part=into @ body.world_from_part) for body in world.bodies)
 
 
 def _joined(train: str, bodies: Sequence[Body], into: Array) -> Iterator[Body]:
