@@ -3,6 +3,7 @@
 import base64
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -184,6 +185,8 @@ def test_components_are_drawn_where_no_measure_is_the_whole_error(display: Displ
     for arrow, along in zip(arrows.values(), np.eye(3)[[0, 2]], strict=True):
         np.testing.assert_allclose(np.abs(arrow.direction), along, rtol=0, atol=1e-6)
     assert with_errors(world, {}).arrows == {}
+    (words,) = with_errors(replace(world, enlarged=1000.0), {"z home": "2 µm"}).arrows
+    assert words == "z home 2 µm, arrow × 1000"
 
 
 def test_a_page_is_refused_of_what_has_no_poses(tmp_path: Path) -> None:

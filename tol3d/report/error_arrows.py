@@ -54,12 +54,12 @@ def with_errors(world: World, values: Mapping[str, str]) -> World:
         world: with lines of measures.
         values: of measures, in words; those without one have no arrow.
     """
-    factor, arrows = (world.magnify or 1.0) * world.enlarged, dict[str, Arrow]()
+    factor, arrows = float(f"{(world.magnify or 1.0) * world.enlarged:.3g}"), dict[str, Arrow]()
     for name, points in errors_of(world, values).items():
         along = world.enlarged * (points[1] - points[0])
         length = float(np.linalg.norm(along))
         if length > 0.0:
-            words = f"{name} {values[name]}, arrow × {factor:.3g}"
+            words = f"{name} {values[name]}, arrow × {factor:g}"
             arrows[words] = Arrow(along / length, points[0], length)
     return world if not arrows else replace(world, arrows={**world.arrows, **arrows})
 
