@@ -356,6 +356,9 @@ def test_a_path_is_played(app: App) -> None:
     faces = app.page.ask("clearInterval(looking), faces")
     assert len({*faces}) > 12
     assert faces in (sorted(faces), sorted(faces, reverse=True)), "it goes one way"
+    app.told("#stands select", "change", "far")
+    app.page.wait(f"Math.abs({face}[0] - (126.491106 + 40)) < 1e-3")
+    assert app.page.ask("[...document.querySelectorAll('#stands output')].at(-1).value") == "far"
     assert app.page.told == []
 
 

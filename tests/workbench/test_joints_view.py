@@ -150,8 +150,10 @@ def test_a_linkage_goes_along_its_path() -> None:
     """The crank points to the slider, stands up, and points away: 24 steps of half a turn, of a crank of 40 mm."""
     crank = simulation_of(load("slider_crank"), Overrides(trials=4, witness=0))
     assert [(own["name"], own["low"], own["high"], own["unit"]) for own in stands(crank.system)] == [
-        ("turn", 0, 24, "")
+        ("turn", 0, 24, ""),
+        ("poses", 0, 2, ""),
     ]
+    assert stands(crank.system)[1]["poses"] == {"far": 0, "up": 1, "near": 2}
     face, at = "slider.face", dict[int, Any]()
     for step in (0, 5, 12, 24):
         found = _states(crank, standing={"turn": step}, measure="worst place", factors=(1.0,))
@@ -167,3 +169,13 @@ def test_a_linkage_goes_along_its_path() -> None:
         angle = math.pi * step / 24
         wanted = 40.0 * math.cos(angle), 40.0 * math.sin(angle), 0.0
         np.testing.assert_allclose(at[step]["crank.pin"], wanted, rtol=0, atol=1e-5)
+
+
+def test_a_linkage_stands_in_poses_in_which_nothing_is_read() -> None:
+    """The platform's centre where the pose states it; no measure is read aside."""
+    platform = simulation_of(load("stewart"), Overrides(trials=4, witness=0))
+    (poses,) = (own["poses"] for own in stands(platform.system) if own["poses"])
+    assert [*poses] == ["home", "aside", "leaning"]
+    found = _states(platform, standing={"poses": poses["aside"]}, measure="place at home", factors=(1.0,))
+    np.testing.assert_allclose(found["nominal"][0]["features"]["platform.centre"], (60, 20, 280), rtol=0, atol=1e-5)
+    assert found["trial"][0]["values"]["place at home"].endswith(", as it stands")

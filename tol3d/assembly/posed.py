@@ -32,6 +32,9 @@ Array = NDArray[np.float64]
 LOOKED_AT: Final = 9
 """Poses of a path at which its nominal values are compared: the ends, and between them."""
 
+POSES: Final = "poses"
+"""The coordinate that goes through all poses of a scene."""
+
 CLOSED_A_MINUTE: Final = 3_000_000
 """Poses of a drive of two loops that one core closes in a minute, both methods and their statistics included."""
 
@@ -76,8 +79,12 @@ class PosedSystem(AssemblySystem):
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
-        """See Posable: steps along its paths."""
-        return tuple(Coordinate(name, 0.0, len(poses) - 1.0, "") for name, poses in self.paths.items())
+        """See Posable: steps along its paths, then through its poses where they are several."""
+        paths = tuple(Coordinate(name, 0.0, len(poses) - 1.0, "") for name, poses in self.paths.items())
+        steps = {name: float(step) for step, name in enumerate(self.pose_names)}
+        if len(steps) < 2 or POSES in self.paths:
+            return paths
+        return (*paths, Coordinate(POSES, 0.0, len(steps) - 1.0, "", steps))
 
     def shown_in(self, pose: str) -> "PosedSystem":
         """See Posable: all of its poses are at hand."""
@@ -87,7 +94,7 @@ class PosedSystem(AssemblySystem):
         """See Posable."""
         assert self.scene is not None
         name, step = next(iter(values.items()))
-        pose = self.paths[name][round(step)]
+        pose = {POSES: self.pose_names, **self.paths}[name][round(step)]
         own = assembly_system(self.scene.model_copy(update={"measures": read_in(self.scene, pose)}), pose)
         own = replace(own, measures=tuple(measure for measure in own.measures if measure.name in measures))
         here = {measure.name: (AS_SET,) for measure in own.measures}

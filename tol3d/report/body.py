@@ -30,6 +30,7 @@ class Body:
         details: a closed triangle mesh in its own frame, shown in pictures on it or within it but not exported.
         painted: "#RRGGBB" of each triangle of its surface that has a colour of its own, empty of the others; made when
             asked for. None: none has.
+        coarse: its surface with coarser facets, which pages have instead; None: they have that of files.
         features: names of the part's features with the number of triangles that each has; in their order these are the
             last of its surface and details together. Made when asked for. None: none are told apart.
     """
@@ -44,6 +45,7 @@ class Body:
     opacity: float = 1.0
     details: Callable[[], Surface] | None = None
     painted: Callable[[], Sequence[str]] | None = None
+    coarse: Callable[[], Surface] | None = None
     features: Callable[[], Mapping[str, int]] | None = None
 
     @cached_property
@@ -73,6 +75,7 @@ class Body:
                     colour=colour,
                     details=self.details if whole else None,
                     painted=None,
+                    coarse=None,
                     features=self.features if whole else None,
                 )
             )

@@ -84,6 +84,7 @@ def gear_body(part: PlacedGear, colour: str) -> Body:
         posed=lambda: PosedGear(part.name, part.perturbed, part.world_from_gear),
         colour=colour,
         scale=part.scale,
+        coarse=part.coarse,
     )
 
 

@@ -18,6 +18,7 @@ from tol3d.report.number import measured_text
 
 DISPLAY_DEFLECTION: Final = 0.5e-3  # mm; a hundredth of a common backlash, and 40 000 triangles a gear at most
 CONE_DEFLECTION: Final = 5e-3  # mm; of a bevel gear, whose faces OCC meshes one by one and much finer than asked
+HELICAL_DEFLECTION: Final = 15e-3  # mm; on pages, of a helical gear, whose mesh for files has dozens of layers
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +43,18 @@ class PlacedGear:
         """Closed triangle mesh in its own frame, before thermal growth: vertices (n, 3) [mm], triangles (m, 3)."""
         display = self.display
         return display.thickened(self.flank_turn), display.triangles
+
+    @property
+    def coarse(self) -> Callable[[], tuple[Array, NDArray[np.int64]]] | None:
+        """Its surface with coarser facets, of a helical gear; None of others."""
+        if not self.gear.twist:
+            return None
+
+        def surface() -> tuple[Array, NDArray[np.int64]]:
+            display = display_mesh(self.gear, HELICAL_DEFLECTION)
+            return display.thickened(self.flank_turn), display.triangles
+
+        return surface
 
     def mesh(self) -> tuple[Array, NDArray[np.int64]]:
         """Closed triangle mesh in the world: vertices (n, 3) [mm], triangles (m, 3)."""

@@ -288,8 +288,8 @@ def _world_of(display: Display, name: str) -> World | None:
 
 
 def _surface(body: Body) -> Surface:
-    """Triangles of a body, then those of its details."""
-    surface = body.surface()
+    """Triangles of a body as pages have it, then those of its details."""
+    surface = (body.coarse or body.surface)()
     if body.details is None:
         return surface
     (vertices, triangles), (more, further) = surface, body.details()

@@ -15,9 +15,9 @@ class Coordinate:
     """A number by which parts stand.
 
     Args:
-        name: of a joint, or of a path.
+        name: of a joint, of a path, or of all poses together.
         low, high: ends to which it goes, in its unit.
-        unit: such as "deg"; "" for steps along a path.
+        unit: such as "deg"; "" for steps along a path or through poses.
         poses: its values in the poses that are stated, the first one first; none of a path.
     """
 

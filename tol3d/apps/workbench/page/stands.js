@@ -16,11 +16,11 @@ function slider(name) {
 }
 
 export function stands() {
-  const every = app.stands ?? [], poses = Object.keys(every.find((own) => own.unit)?.poses ?? {});
+  const every = app.stands ?? [], poses = Object.keys(every.find(named)?.poses ?? {});
   moved = "";
   playing = false;
   $("standing").hidden = !every.length;
-  $("standing").querySelector("summary").textContent = every.some((own) => own.unit) ? "joints" : "paths";
+  $("standing").querySelector("summary").textContent = every.some((own) => own.unit) ? "joints" : every.every(named) ? "poses" : "paths";
   const label = document.createElement("label"), pose = document.createElement("select");
   pose.append(new Option("as measured", ""), ...poses.map((name) => new Option(name, name)));
   label.append("pose ", pose);
@@ -31,6 +31,10 @@ export function stands() {
 
 export function seen(pose) { // which is shown, as long as none is set
   if (!moved) for (const own of app.stands ?? []) set(own, own.poses[pose] ?? first(own));
+}
+
+function named(own) { // of a joint, or of the poses of loops, not of a path
+  return Object.keys(own.poses).length > 0;
 }
 
 function first(own) {
@@ -64,7 +68,8 @@ function move(own, value) {
 function set(own, value) {
   const input = slider(own.name);
   input.value = value;
-  const number = Number(input.value), words = own.unit ? `${number.toFixed(1)}${own.unit === "deg" ? "°" : ` ${own.unit}`}` : `step ${number} of ${own.high}`;
+  const number = Number(input.value), pose = Object.keys(own.poses).find((name) => own.poses[name] === number);
+  const words = own.unit ? `${number.toFixed(1)}${own.unit === "deg" ? "°" : ` ${own.unit}`}` : pose ?? `step ${number} of ${own.high}`;
   input.closest("label").querySelector("output").value = words;
   input.setAttribute("aria-valuetext", words);
 }
@@ -73,7 +78,7 @@ function choose(pose) {
   playing = false;
   still();
   for (const own of app.stands) set(own, own.poses[pose] ?? first(own));
-  moved = pose ? app.stands.find((own) => own.unit).name : "";
+  moved = pose ? app.stands.find(named).name : "";
   stage();
 }
 
