@@ -77,3 +77,34 @@ def test_a_narrower_common_face_is_told(tolerances: str, width: str, tmp_path: P
 )
 def test_gears_within_the_wider_face_are_not_warned_of(tolerances: str, tmp_path: Path) -> None:
     assert warnings(tolerances, tmp_path) == []
+
+
+TWO = """\
+scene: two meshes between two shafts
+parts:
+  a: {kind: helical_gear, teeth: 23, module: 1 mm, helix_angle: 20 deg, hand: right, face_width: 10 mm}
+  b: {kind: helical_gear, teeth: 40, module: 1 mm, helix_angle: 20 deg, hand: left, face_width: 10 mm}
+  c: {kind: helical_gear, teeth: 23, module: 1 mm, helix_angle: 20 deg, hand: left, face_width: 10 mm}
+  d: {kind: helical_gear, teeth: 40, module: 1 mm, helix_angle: 20 deg, hand: right, face_width: 8 mm}
+  one: {kind: shaft, carries: {a: {}, c: {at: 20 mm}}}
+  two: {kind: shaft, carries: {b: {}, d: {at: %s mm}}}
+tolerances:
+  t: {kind: tooth_thickness, of: a, distribution: {kind: constant, value: -60 um}}
+moves:
+  first: {kind: mesh, driver: a, driven: b, centre_distance: 33.6 mm}
+  second: {kind: mesh, driver: c, driven: d, centre_distance: 33.6 mm}
+  train: {kind: train, driven: one, output: two}
+measures: {l: {kind: lost_motion, of: train}}
+study: {trials: 10, seed: 1}
+"""
+
+
+@pytest.mark.parametrize(("at", "told"), [(29.0, True), (11.0, True), (28.99, False)])
+def test_places_on_shafts_that_leave_no_common_face_are_told(at: float, told: bool, tmp_path: Path) -> None:
+    """Of faces 10 and 8 mm wide 9 mm apart."""
+    (path := tmp_path / "two.yaml").write_text(TWO % at)
+    with pytest.raises(SceneError) as refused:
+        model_of_scene(path)
+    words = f"from where 'first' puts it, and 'c' and 'd' have no common face, {abs(at - 20):g} mm apart along the axis"
+    assert (words in str(refused.value)) == told
+    assert "moves.second: the load paths to 'two' do not fit: here it lies" in str(refused.value)

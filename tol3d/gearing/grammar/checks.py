@@ -188,7 +188,8 @@ def implausible_faces(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         if gear.face_width.internal < (least := NARROWEST_FACE * gear.module.internal) - ROUNDING:
             words = f"expected at least {least:.4g} mm, a tenth of the module, got {gear.face_width}"
             yield ("parts", name, "face_width"), f"{words}; check the unit"
-    for name, spec in {**scene.of(AxialShiftSpec), **scene.of(AxialPlaySpec)}.items():
+    along: Mapping[str, AxialShiftSpec | AxialPlaySpec] = {**scene.of(AxialShiftSpec), **scene.of(AxialPlaySpec)}
+    for name, spec in along.items():
         far = larger_end(spec.distribution.resolve(scene.files))
         widths = {
             gear: part.face_width.internal

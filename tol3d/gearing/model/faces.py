@@ -76,6 +76,14 @@ def refuse_no_common_face(scene: Scene, model: Model) -> None:
             raise scene.refuse(("moves", mesh.name), f"{words}, {came}")
 
 
+def no_common_face(mesh: Mesh, off: float) -> str:
+    """Words on a driven gear so far off its driver along the axis [mm] that their faces do not overlap; else ""."""
+    most = (mesh.pair.pinion.face_width + mesh.pair.wheel.face_width) / 2
+    if abs(off) < most:
+        return ""
+    return f", and {mesh.driver!r} and {mesh.driven!r} have no common face, {abs(off):.4g} mm apart along the axis"
+
+
 def narrower_faces(model: Model) -> Iterator[str]:
     """Warnings of faces that overlap less than the narrower one is wide."""
     for own in common_faces(model):

@@ -238,14 +238,15 @@ class _Placing:
         return np.asarray(pose)
 
 
-def misfit(layout: Layout, mesh: Mesh) -> tuple[float, float]:
-    """Offset of a driven shaft from its place by a mesh: [mm], and the axes' angle [rad]."""
+def misfit(layout: Layout, mesh: Mesh) -> tuple[Array, float]:
+    """Offset (3,) of a driven shaft from its place by a mesh, in its frame [mm], and the axes' angle [rad]."""
     shaft, _ = layout.carrying[mesh.driven]
     frame = layout.shaft_from_gear[mesh.driven]
     there = layout.world_from_mesh[mesh.name] @ _wheel_in_mesh(mesh) @ np.linalg.inv(frame)
     here = layout.world_from_shaft[shaft]
     axes = float(np.linalg.norm(np.cross(there[:3, 2], here[:3, 2])))
-    return float(np.linalg.norm(there[:3, 3] - here[:3, 3])), axes if there[:3, 2] @ here[:3, 2] > 0.0 else np.pi
+    off = layout.world_from_mesh[mesh.name][:3, :3].T @ (there[:3, 3] - here[:3, 3])
+    return off, axes if there[:3, 2] @ here[:3, 2] > 0.0 else np.pi
 
 
 def _of_driver(mesh: Mesh, own: Carried, shaft: Turning) -> Turning:

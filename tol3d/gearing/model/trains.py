@@ -11,6 +11,7 @@ from tol3d.gearing.grammar.moves import GearMeshSpec, LinkSpec, TrainSpec, meshe
 from tol3d.gearing.grammar.parts import ArmSpec, BearingSpec, GearSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import ReducerBacklashSpec
 from tol3d.gearing.links import StatedLink
+from tol3d.gearing.model.faces import no_common_face
 from tol3d.gearing.model.layout import Layout, misfit
 from tol3d.gearing.model.shaft_trees import ratio_text
 from tol3d.gearing.shafts import Arm, Carried, Mesh, Shaft, Train, Vector
@@ -121,14 +122,14 @@ def refuse_misfits(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None
     """
     for mesh in meshes:
         if mesh.name in {link.name for link in layout.closing}:
-            apart, askew = misfit(layout, mesh)
-            if apart > PLACE_AS_WRITTEN or askew > AXES_AS_WRITTEN:
+            off, askew = misfit(layout, mesh)
+            if (apart := float(np.linalg.norm(off))) > PLACE_AS_WRITTEN or askew > AXES_AS_WRITTEN:
                 shaft = layout.carrying[mesh.driven][0]
                 raise scene.refuse(
                     ("moves", mesh.name),
                     f"the load paths to {shaft!r} do not fit: here it lies {apart:.3f} mm and "
                     f"{math.degrees(askew):.3f} deg from where {layout.driving[shaft].name!r} "
-                    "puts it; check azimuths, centre distances and places "
+                    f"puts it{no_common_face(mesh, float(off[2]))}; check azimuths, centre distances and places "
                     "on the shafts",
                 )
             if layout.seating(mesh.name).gap > PLACE_AS_WRITTEN:

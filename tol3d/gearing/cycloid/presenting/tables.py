@@ -32,7 +32,7 @@ def blocks(reducer: RVSystem | RVLink, contributors: Sequence[Contributor]) -> S
     own, acts = reducer.own, reducer.acts
     first = own.first
     gears = {} if first is None else {name: first.gear(name) for name in (first.sun, first.planet)}
-    meshes = [] if first is None else [Mesh(f"{first.sun}–{first.planet}", *gears, first.pair, RIGHT)]
+    meshes = [] if first is None else [Mesh(f"{first.sun}–{first.planet}", first.sun, first.planet, first.pair, RIGHT)]
     formulas = stage_blocks(stages_by_formula(own, acts, contributors))
     return (*map(line, _words(own)), *gear_data(gears, meshes, acts, contributors), _levers(own), *formulas)
 
