@@ -94,3 +94,30 @@ def test_a_pin_that_no_move_uses_is_listed_with_its_hole(tmp_path: Path) -> None
         "#   pin.pin 1 ⌀10 in left.hole 1 ⌀10",
         "#   pin.pin 1 ⌀10 in right.hole 1 ⌀10",
     ]
+
+
+def keyed(folder: Path, width: float) -> FileContent:
+    """A base 80 × 50 × 20 with two pockets 10.1 and `width` wide across each other, and a lid with tabs 10 wide."""
+    base = cq.Workplane().box(80, 50, 20).translate((3, 2, -10))
+    lid = cq.Workplane().box(70, 40, 6).translate((2, 3, 3))
+    for x, pocket, tab in ((-17.0, (10.1, 24.0), (10.0, 12.0)), (24.0, (24.0, width), (12.0, 10.0))):
+        base = base.cut(cq.Workplane().box(*pocket, 16).edges("|Z").fillet(4).translate((x, 4, 0)))
+        lid = lid.union(cq.Workplane().box(*tab, 5).translate((x, 4, -2.5)))
+    return step_file({"lid": solid(lid), "base": solid(base)}, folder / "keyed.step")
+
+
+def test_tabs_midway_between_walls_are_pairs_of_the_move(tmp_path: Path) -> None:
+    """Both, with the play of 0.1 and 0.2 mm; between walls 21 mm apart nothing is located."""
+    text, _ = scene_from([keyed(tmp_path, 10.2)])
+    scene = yaml.safe_load(text)
+    (move,) = (own for own in scene["moves"].values() if own["kind"] != "fix")
+    assert move["kind"] == "pattern"
+    assert [(pair["from"], pair["to"]) for pair in move["pairs"]] == [
+        ("lid.tab 1", "base.slot 1"), ("lid.tab 2", "base.slot 2"),
+    ]  # fmt: skip
+    slots = {name: own["width"] for name, own in scene["parts"]["base"]["features"].items() if own["kind"] == "slot"}
+    assert slots == {"slot 1": "10.1 mm", "slot 2": "10.2 mm"}
+    assert "no move uses" not in text
+    assert min(deviating(text, tmp_path).values()) > 1e-6
+    wide = yaml.safe_load(scene_from([keyed(tmp_path, 21.0)])[0])["parts"]["base"]["features"]
+    assert sum(own["kind"] == "slot" for own in wide.values()) == 1

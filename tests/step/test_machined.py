@@ -121,3 +121,38 @@ def test_tabs_rise_from_a_face_that_goes_on_beyond_them(tmp_path: Path) -> None:
 def test_a_plain_block_with_holes_and_rounded_edges_has_none(tmp_path: Path) -> None:
     made = plate().pushPoints([(0, 0), (20, 7)]).hole(6).edges("|Z").fillet(3)
     assert machined(made, tmp_path).all == ()
+
+
+def test_slots_open_at_one_end_have_one_round_or_flat_one(tmp_path: Path) -> None:
+    """A round slot 9 wide from x = 12 to the edge at 45, a notch 7 wide and 20 long, a groove 5 wide across the plate,
+    3 deep; a pocket, a step and a slot whose other end is flat are none.
+    """
+    made = cq.Workplane().box(90, 60, 10)
+    made = made.cut(cq.Workplane().circle(4.5).extrude(20).translate((12, 8, -10)))
+    made = made.cut(cq.Workplane().box(33, 9, 20).translate((28.5, 8, 0)))
+    made = made.cut(cq.Workplane().box(20, 7, 20).translate((-35, -4, 0)))
+    made = made.cut(cq.Workplane().box(5, 60, 6).translate((-9, 0, 5)))
+    made = made.cut(cq.Workplane().box(12, 8, 4).translate((15, -15, 5)))
+    made = made.cut(cq.Workplane().box(9, 90, 6).translate((45, 0, -5)))
+    made = made.cut(cq.Workplane().box(11, 6, 20).translate((-32.5, 18, 0)))
+    made = made.cut(cq.Workplane().circle(3).extrude(20).translate((-27, 18, -10)))
+    found = machined(made, tmp_path).slots
+    assert {own.words: tuple(own.middle) for own in found} == {
+        "slot 9 wide, 37.5 long, 10 deep, open at one end": pytest.approx(moved((28.5, 8.0, 0.0)), abs=1e-9),
+        "slot 7 wide, 20 long, 10 deep, open at one end": pytest.approx(moved((-35.0, -4.0, 0.0)), abs=1e-9),
+        "groove 5 wide, 60 long, 3 deep": pytest.approx(moved((-9.0, 0.0, 3.5)), abs=1e-9),
+    }
+
+
+def test_a_pin_stands_in_an_open_slot_within_its_walls_alone(tmp_path: Path) -> None:
+    made = cq.Workplane().box(90, 60, 10).cut(cq.Workplane().box(20, 7, 20).translate((-35, -4, 0)))
+    (notch,) = machined(made, tmp_path).slots
+    up = np.subtract(moved((0.0, 0.0, 1.0)), moved((0.0, 0.0, 0.0)))
+    told = [
+        notch.holds(np.array(moved(at)), up, radius, 12.0)
+        for at, radius in (
+            ((-35.0, -4.0, 3.0), 3.4), ((-26.0, -4.0, 3.0), 3.4), ((-35.0, -4.1, 3.0), 3.4), ((-46.0, -4.0, 3.0), 3.4),
+            ((-24.0, -4.0, 3.0), 3.4), ((-35.0, -4.0, 12.0), 3.4), ((-35.0, -4.0, 3.0), 3.6), ((-35.0, -4.0, 3.0), 1.7),
+        )
+    ]  # fmt: skip
+    assert told == [True, True, *[False] * 6]

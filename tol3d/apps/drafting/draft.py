@@ -19,7 +19,7 @@ from tol3d.apps.drafting.fixture import fixture
 from tol3d.apps.drafting.measured import MOST_MEASURES, Candidate, Key, apart, between, ranked
 from tol3d.apps.drafting.other_files import name_of, roots, with_other_files
 from tol3d.apps.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
-from tol3d.apps.drafting.touching_faces import ALONE, Contacts, moves
+from tol3d.apps.drafting.touching_faces import ALONE, FIRST, Contacts, moves, size_of
 from tol3d.apps.drafting.words import Names, cleaned, comment, length, scalar
 from tol3d.cad.step import FoundFeature, StepError, shown
 from tol3d.errors import InputError, SceneError
@@ -34,6 +34,7 @@ PER_PLAY: Final = 4.0  # guessed zones of a pair of pins in their holes: togethe
 MOST_TRIES: Final = 200
 TRIALS: Final = 10_000
 LONGEST: Final = 240  # characters of a reason
+MOST_NAMED: Final = 6  # parts in a note
 MOST_LISTED: Final = 12  # of what a scene lacks of the shapes
 SAMPLE: Final = 256  # trials by which measures are ranked
 
@@ -131,10 +132,16 @@ class Draft:
         for line in self.tail():
             if line.startswith("# Of the "):
                 yield line.removeprefix("# ")
-        for entry in self.entries:
-            if entry.section == "moves" and entry.stands and ALONE in entry.wording.comment:
-                part = entry.wording.lines[0].partition("part: ")[2].removesuffix("}")
-                yield f"{part}: {ALONE}, and is fixed there; --seat PART.FACE --on PART.FACE lays it on another"
+        for why in (ALONE, FIRST):
+            fixed = [
+                entry.wording.lines[0].partition("part: ")[2].removesuffix("}")
+                for entry in self.entries
+                if entry.section == "moves" and entry.stands and why in entry.wording.comment
+            ]
+            if fixed:
+                more = f" and {len(fixed) - MOST_NAMED} more" if len(fixed) > MOST_NAMED else ""
+                names = ", ".join(fixed[:MOST_NAMED]) + more
+                yield f"{names}: {why}, and is fixed there; --seat PART.FACE --on PART.FACE lays it on another"
 
     def told(self, own: ReadText) -> Iterator[str]:
         """Outcome of each tolerance and dimension of a file, in comments."""
@@ -275,7 +282,7 @@ def draft(
     if chosen is not None:
         candidates.sort(key=lambda own: chosen.index(own.key))
     made = [*said, *placed, *(own.entry for own in candidates)]
-    made += something(parts, made, names)
+    made += something(parts, made, names, contacts)
     made += () if said else guessed(parts, names)
     return Draft(files, parts, sorted(made, key=is_inspection), candidates, contacts, missing)
 
@@ -310,8 +317,12 @@ def guessed(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
             yield Entry("tolerances", scalar(name), [Wording((words,), "guess: the files state no tolerance")])
 
 
-def something(parts: Sequence[DraftedPart], entries: Sequence[Entry], names: Names) -> Iterator[Entry]:
+def something(
+    parts: Sequence[DraftedPart], entries: Sequence[Entry], names: Names, contacts: Contacts | None
+) -> Iterator[Entry]:
     """A measure where there is none yet, and a feature of each part that has none: a scene has both.
+
+    The measure is of a single part, or of the one that holds the others and the largest of these, one in contact first.
 
     Raises:
         StepError: a part has no face that a scene can use.
@@ -321,7 +332,12 @@ def something(parts: Sequence[DraftedPart], entries: Sequence[Entry], names: Nam
             part.features.name(part.features.largest()[0])
     if any(entry.section == "measures" for entry in entries):
         return
-    first, last = parts[0], parts[-1]
+    first = last = parts[0]
+    if contacts is not None:
+        first = contacts.base
+        last = max(
+            (own for own in parts if own is not first), key=lambda own: (contacts.touch(first, own), size_of(own))
+        )
     faces = first.features.largest()
     start = first.features.name(faces[0])
     end = last.features.name(faces[-1] if first is last else last.features.largest()[0])

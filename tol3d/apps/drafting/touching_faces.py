@@ -8,11 +8,11 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.apps.drafting.entry import Entry, Wording
+from tol3d.apps.drafting.in_slots import InSlot, in_slots
 from tol3d.apps.drafting.parts import DraftedPart
-from tol3d.apps.drafting.pins_in_slots import PinInSlot, pins_in_slots
 from tol3d.apps.drafting.words import Names, comment, number, scalar
 from tol3d.assembly import Cone, cone_seat, unfit_cones
-from tol3d.cad.step import FoundFeature
+from tol3d.cad.step import FoundFeature, Tab
 from tol3d.numerics.arrays import Array
 
 TOUCHING: Final = 1e-3  # mm; what models are drawn to
@@ -20,6 +20,7 @@ PARALLEL: Final = 1e-6  # sine, cosine
 LARGEST_BOLT: Final = 3.0  # diameters of the smallest hole beside it
 THINNEST_BOLT: Final = 0.5  # of the wider hole; one that is wider still clears a bolt's head and locates nothing
 ALONE: Final = "it touches no other part as it stands"
+FIRST: Final = "as it stands it touches only parts that are placed after it"
 BOLT_LESS: Final = 0.1  # of the hole, where no position says how much
 
 
@@ -64,10 +65,10 @@ class Coaxial:
 
 @dataclass(frozen=True)
 class Pinned:
-    """A pin of one part in a hole or slot of another.
+    """A pin of one part in a hole or slot of another, or a tab in a slot.
 
     Args:
-        ends: the pin, then the hole or a wall of the slot, each with its part.
+        ends: the pin or a wall of the tab, then the hole or a wall of the slot, each with its part.
         words: both with their sizes.
     """
 
@@ -209,13 +210,14 @@ class Contacts:
             self._known[key] = find(part, other)
         return self._known[key]
 
-    def slotted(self, part: DraftedPart, other: DraftedPart) -> list[PinInSlot]:
-        """See `pins_in_slots`."""
-        return self._once("slotted", pins_in_slots, part, other)
+    def slotted(self, part: DraftedPart, other: DraftedPart) -> list[InSlot]:
+        """See `in_slots`."""
+        faces = [(own.face, own.there, own.gap) for own in self.facing(part, other)]
+        return self._once("slotted", lambda part, other: in_slots(part, other, faces), part, other)
 
     @property
     def pins(self) -> Iterator[Pinned]:
-        """Pins in holes and slots of all pairs of parts."""
+        """Pins in holes, pins and tabs in slots of all pairs of parts."""
         for k, part in enumerate(self.parts):
             for other in self.parts[:k]:
                 for own in self.coaxial(part, other):
@@ -224,8 +226,11 @@ class Contacts:
                     if not own.holes:
                         yield Pinned((pin, hole), f"{sized(*pin)} in {sized(*hole)}")
                 for slotted in self.slotted(part, other):
-                    words = f"{sized(slotted.pinned, slotted.pin)} in a slot {number(slotted.slot.width)} wide of "
-                    ends = (slotted.pinned, slotted.pin), (slotted.slotted, slotted.slot.walls[0])
+                    held = slotted.members[0]
+                    tab = f"tab {number(slotted.width - slotted.play)} wide of {comment(slotted.holder.name)}"
+                    words = tab if isinstance(slotted.own, Tab) else sized(slotted.holder, held)
+                    words += f" in a slot {number(slotted.width)} wide of "
+                    ends = (slotted.holder, held), (slotted.slotted, slotted.walls[0])
                     yield Pinned(ends, words + comment(slotted.slotted.name))
 
     def touch(self, part: DraftedPart, other: DraftedPart) -> bool:
@@ -322,10 +327,11 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], contacts: Contacts, n
             lines.append(axis)
     square = [axis for axis in lines if not normals or abs(float(axis.axis @ normals[0])) > 1.0 - PARALLEL]
     square = [axis for axis in square if is_bolted(axis, square)] or square
-    in_slots = [own for other in others for own in contacts.slotted(part, other)] if relations and square else []
+    in_slots = [own for other in others for own in contacts.slotted(part, other)] if relations else []
     name = scalar(names.new(f"{part.name} placed", "placed"))
     if not relations and not square:
-        yield Entry("moves", name, [Wording(fixed(part).lines, f"guess: {ALONE}")])
+        why = FIRST if contacts.neighbours[part.name] else ALONE
+        yield Entry("moves", name, [Wording(fixed(part).lines, f"guess: {why}")])
         return
     mated = [
         f"  - {{kind: coaxial, from: {feature(part, own.own)}, to: {feature(own.other, own.there)}}}"
@@ -333,18 +339,19 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], contacts: Contacts, n
     ]
     head = ("kind: mate", f"part: {scalar(part.name)}", "relations:")
     ways = []
-    if square and relations and (pairs := [playing(own, contacts) for own in square]) and all(pairs):
+    pairs = [playing(own, contacts) for own in square] if relations else []
+    if relations and all(pairs):
         made = [own for own in pairs if own is not None]
         for pair in square:
             yield from unsized(((pair.part, pair.own), (pair.other, pair.there)), names)
         for slotted in in_slots if all(own.play > TOUCHING for own in in_slots) else ():
             made.append(slotted.pair(part))
-            slotted.slotted.features.plays(slotted.slot.walls, slotted.play)
-            slotted.pinned.features.plays([slotted.pin], slotted.play)
-            yield from unsized(((slotted.pinned, slotted.pin), (slotted.slotted, slotted.slot.walls[0])), names)
+            slotted.slotted.features.plays(slotted.walls, slotted.play)
+            slotted.holder.features.plays(slotted.members, slotted.play)
+            yield from unsized(((slotted.holder, slotted.members[0]), (slotted.slotted, slotted.walls[0])), names)
         words = ("kind: pattern", f"part: {scalar(part.name)}", "float: {kind: random}",
                  "relations:", *relations[:1], "pairs:", *made)  # fmt: skip
-        ways.append(Wording(words, "guess: faces that touch, with pins and bolts in their play"))
+        ways += [Wording(words, "guess: faces that touch, with pins and bolts in their play")] if made else []
     both = [*relations, *mated]
     ways += [Wording((*head, *both[:k]), "guess: faces and axes that meet") for k in range(len(both), 0, -1)]
     yield Entry("moves", name, [*ways, fixed(part)])

@@ -20,6 +20,7 @@ SAME: Final = 1e-3  # mm; what models are drawn to
 SQUARE: Final = 1e-6  # cosine
 HALF_TURN: Final = 0.02  # rad; how far an end of a slot may turn from half round
 LEAST_SINK: Final = 1.3  # times the hole; a cone that widens less is a chamfer of its edge
+THINNEST: Final = 0.5  # of a slot's width; a thinner pin in it is not located by it
 MOST_HOLES: Final = 2000  # of a part, beyond which they are not compared with each other
 MOST_PLANES: Final = 400  # the same of flat faces
 
@@ -69,32 +70,27 @@ class Stepped:
 
 @dataclass(frozen=True)
 class Slot:
-    """A slot of two half rounds and the walls between them.
+    """Walls that face each other: between two half rounds, from one to an open end, or on a flat end or bottom.
 
     Args:
         walls: both, the material behind each.
-        ends: the half rounds.
+        ends: two half rounds, or one; or the flat face from which the walls rise.
+        middle: between the axes of both rounds, else between its end and the nearer end of a wall (3,) [mm].
         axis: through its depth (3,).
+        along: its length (3,).
+        width: distance of its walls [mm].
+        length: over its ends; of an open slot from its end to the nearer end of a wall [mm].
+        depth: along its axis [mm].
     """
 
     walls: tuple[FoundFeature, FoundFeature]
-    ends: tuple[FoundFeature, FoundFeature]
+    ends: tuple[FoundFeature, ...]
+    middle: Array
     axis: Array
-
-    @property
-    def width(self) -> float:
-        """Distance of its walls [mm]."""
-        return 2 * self.ends[0].radius
-
-    @property
-    def length(self) -> float:
-        """Length over both ends [mm]."""
-        return float(np.linalg.norm(np.subtract(self.ends[1].at, self.ends[0].at))) + self.width
-
-    @property
-    def depth(self) -> float:
-        """Depth along its axis [mm]."""
-        return self.ends[0].length
+    along: Array
+    width: float
+    length: float
+    depth: float
 
     @property
     def members(self) -> tuple[FoundFeature, ...]:
@@ -104,22 +100,21 @@ class Slot:
     @property
     def words(self) -> str:
         """The feature with its numbers [mm]."""
-        return f"slot {self.width:.6g} wide, {self.length:.6g} long, {self.depth:.6g} deep"
+        bottom = self.ends[0].kind == "plane" and abs(float(np.dot(self.ends[0].direction, self.along))) < SQUARE
+        of = ", open at one end" if len(self.ends) == 1 and not bottom else ""
+        word = "groove" if bottom else "slot"
+        return f"{word} {self.width:.6g} wide, {self.length:.6g} long, {self.depth:.6g} deep{of}"
 
     def holds(self, at: Array, direction: Array, radius: float, length: float) -> bool:
-        """True if a pin stands in it, in the frame of its part: on its middle plane, between both ends."""
-        start, end = (np.array(own.at) for own in self.ends)
-        along = end - start
-        size = float(np.linalg.norm(along))
-        along = along / size
-        off = at - start
-        depth = abs(float((at - (start + end) / 2) @ self.axis))
+        """True if a pin stands in it, in the frame of its part: on its middle plane, between its ends."""
+        rounds = sum(own.kind == "fillet" for own in self.ends)
+        free, off = self.length - rounds * self.width / 2, at - self.middle
         return (
-            abs(float(direction @ self.axis)) > 1.0 - SQUARE
-            and abs(float(off @ np.cross(self.axis, along))) < SAME
-            and -SAME < float(off @ along) < size + SAME
-            and depth < (length + self.ends[0].length) / 2 - SAME
-            and 2 * radius <= self.width + SAME
+            THINNEST * self.width < 2 * radius < self.width + SAME
+            and abs(float(direction @ self.axis)) > 1.0 - SQUARE
+            and abs(float(off @ np.cross(self.axis, self.along))) < SAME
+            and abs(float(off @ self.along)) < free / 2 + SAME
+            and abs(float(off @ self.axis)) < (length + self.depth) / 2 - SAME
         )
 
 
@@ -228,8 +223,79 @@ class Machined:
 
     @cached_property
     def slots(self) -> tuple[Slot, ...]:
-        """Slots, each by its ends and the walls between them."""
-        return tuple(_slots(self._of("fillet"), self._of("plane")))
+        """Slots, each by its walls and one or two ends; those with a flat one are longer than wide."""
+        planes, rounds = self._of("plane"), self._rounds
+        if len(planes) > MOST_PLANES:
+            return ()
+        closed = list(_slots(rounds, planes))
+        ended = {own.faces for slot in closed for own in slot.ends}
+        half_open = [slot for own in rounds if own.faces not in ended for slot in self._opening(own, planes)]
+        return *closed, *half_open, *self._grooves(planes)
+
+    def _opening(self, end: FoundFeature, planes: Sequence[FoundFeature]) -> Iterator[Slot]:
+        """The slot from a half round to where its two walls end; none if they end unlike."""
+        centre, axis = np.array(end.at), np.array(end.direction)
+        normals, places = _normals(planes), np.array([own.at for own in planes]).reshape(-1, 3)
+        tangent = np.abs(np.einsum("ij,ij->i", centre - places, normals) - end.radius) < SAME
+        walls = [planes[k] for k in np.flatnonzero(tangent & (np.abs(normals @ axis) < SQUARE)).tolist()]
+        for first, second in combinations(walls, 2):
+            along = np.cross(axis, first.direction)
+            start = float(centre @ along)
+            reaches = [self._reach(own, along) for own in (first, second)]
+            lengths = [own - start for own in np.transpose(reaches).ravel().tolist()]  # both lows, both highs
+            if not _opposed(first, second) or not _overlapping(first, end, self._reach, axis):
+                continue
+            for sign, near, far in ((1.0, lengths[:2], lengths[2:]), (-1.0, lengths[2:], lengths[:2])):
+                free, longest = (pick(sign * own for own in far) for pick in (min, max))
+                if max(map(abs, near)) < SAME < free and not self._closed(planes, first, end, sign * along, longest):
+                    middle, sizes = centre + sign * free / 2 * along, (2 * end.radius, free + end.radius, end.length)
+                    yield Slot((first, second), (end,), middle, axis, along, *sizes)
+
+    def _closed(
+        self, planes: Sequence[FoundFeature], wall: FoundFeature, end: FoundFeature, out: Array, length: float
+    ) -> bool:
+        """True if a flat face looks at an end of a slot, or a half round stands there, before its walls end."""
+        foot, sides = float(np.dot(end.at, out)), (np.array(wall.direction), np.cross(out, wall.direction))
+        looking = [planes[k] for k in np.flatnonzero(_normals(planes) @ out < -1.0 + SQUARE).tolist()]
+        return any(
+            SAME < float(np.dot(own.at, out)) - foot < length + SAME
+            and all(_overlapping(own, end, self._reach, across) for across in sides)
+            for own in (*looking, *self._rounds)
+        )
+
+    @cached_property
+    def _rounds(self) -> list[FoundFeature]:
+        """Hollow half rounds, such as ends of slots."""
+        return [own for own in self._of("fillet") if abs(own.turn - np.pi) < HALF_TURN]
+
+    def _grooves(self, planes: Sequence[FoundFeature]) -> Iterator[Slot]:
+        """Slots and grooves whose walls rise from a flat face between them, each pair of walls once."""
+        known: set[tuple[tuple[int, ...], ...]] = set()
+        normals = _normals(planes)
+        for floor in sorted(planes, key=lambda own: -own.area):
+            up, foot = np.array(floor.direction), float(np.dot(floor.at, floor.direction))
+            walls = []
+            for k in np.flatnonzero(np.abs(normals @ up) < SQUARE).tolist():
+                low, high = self._reach(planes[k], up)
+                edge = self._reach(floor, normals[k])[0]
+                if abs(low - foot) < SAME < high - low and abs(float(np.dot(planes[k].at, normals[k])) - edge) < SAME:
+                    walls.append((planes[k], high - low))
+            pairs = [(a, b) for a, b in combinations(walls, 2) if _opposed(a[0], b[0])]
+            if len(pairs) != 1:  # two make a pocket
+                continue
+            (first, height), (second, other) = pairs[0]
+            width = float(np.subtract(second.at, first.at) @ np.array(first.direction))
+            axis, high = np.cross(up, first.direction), min(height, other)
+            middle, (low, end) = np.array(floor.at) + high / 2 * up, self._reach(floor, axis)
+            across, along = sorted(((end - low, axis), (high, up)), key=lambda own: own[0])
+            pair = first.faces, second.faces
+            if (
+                pair not in known
+                and along[0] > width > SAME
+                and not self._closed(planes, first, floor, up, max(height, other))
+            ):
+                known.add(pair)
+                yield Slot((first, second), (floor,), middle, across[1], along[1], width, along[0], across[0])
 
     @cached_property
     def tabs(self) -> tuple[Tab, ...]:
@@ -258,8 +324,11 @@ class Machined:
         for (first, height), (second, other) in combinations(walls, 2):
             normal, between = np.array(first.direction), np.subtract(second.at, first.at)
             width = -float(between @ normal)
-            opposite = float(normal @ np.array(second.direction)) < -1.0 + SQUARE
-            if opposite and width > SAME and np.linalg.norm(between + width * normal) < SAME > abs(height - other):
+            if (
+                _opposed(first, second)
+                and width > SAME
+                and np.linalg.norm(between + width * normal) < SAME > abs(height - other)
+            ):
                 low, high = self._reach(first, np.cross(up, normal))
                 yield Tab((first, second), base, width, high - low, height)
 
@@ -337,8 +406,26 @@ def _stepped(hole: FoundFeature, mouth: FoundFeature) -> Stepped | None:
     return Stepped("countersink", hole, mouth, out)
 
 
-def _slots(fillets: Sequence[FoundFeature], planes: Sequence[FoundFeature]) -> Iterator[Slot]:
-    rounds = [own for own in fillets if abs(own.turn - np.pi) < HALF_TURN]
+def _normals(planes: Sequence[FoundFeature]) -> Array:
+    """Normals of flat faces (n, 3)."""
+    return np.array([own.direction for own in planes]).reshape(-1, 3)
+
+
+def _opposed(first: FoundFeature, second: FoundFeature) -> bool:
+    """True if two flat faces have opposite normals."""
+    return float(np.dot(first.direction, second.direction)) < -1.0 + SQUARE
+
+
+def _overlapping(
+    first: FoundFeature, second: FoundFeature, reach: Callable[[FoundFeature, Array], tuple[float, float]], along: Array
+) -> bool:
+    """True if two features share some of a direction."""
+    (low, high), (start, end) = reach(first, along), reach(second, along)
+    return min(high, end) - max(low, start) > SAME
+
+
+def _slots(rounds: Sequence[FoundFeature], planes: Sequence[FoundFeature]) -> Iterator[Slot]:
+    """Slots between two half rounds."""
     for first, second in combinations(rounds, 2):
         axis = np.array(first.direction)
         between = np.subtract(second.at, first.at)
@@ -346,10 +433,12 @@ def _slots(fillets: Sequence[FoundFeature], planes: Sequence[FoundFeature]) -> I
         parallel = abs(float(axis @ np.array(second.direction))) > 1.0 - SQUARE
         if not parallel or abs(first.radius - second.radius) > SAME or size < SAME or abs(between @ axis) > SAME:
             continue
-        across, middle = np.cross(axis, between / size), (np.array(first.at) + np.array(second.at)) / 2
+        along, width = between / size, 2 * first.radius
+        across, middle = np.cross(axis, along), (np.array(first.at) + np.array(second.at)) / 2
         sides = [_wall(planes, middle + sign * first.radius * across, -sign * across) for sign in (-1.0, 1.0)]
         if sides[0] is not None and sides[1] is not None:
-            yield Slot((sides[0], sides[1]), (first, second), axis)
+            ends, sizes = (first, second), (width, size + width, first.length)
+            yield Slot((sides[0], sides[1]), ends, middle, axis, along, *sizes)
 
 
 def _wall(planes: Sequence[FoundFeature], at: Array, normal: Array) -> FoundFeature | None:
