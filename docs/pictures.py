@@ -129,6 +129,16 @@ PICTURES: Final[Mapping[str, Picture]] = {
     ),
     "reducer_3k.png": viewed("reducer_3k", "--trial 3"),
     "robot.png": viewed("robot_shoulder", "--mean", CLOSE_UP),
+    "robot_arm.png": Picture(
+        (
+            "tol3d run robot_arm --trials 20 --out run --no-picture",
+            "tol3d view run --nominal --screenshot view.png",
+        ),
+        "view.png",
+        (*VIEW, "gearing/machine/presenting/trains_in_joints.py"),
+        ("robot_arm",),
+        1200,
+    ),
     "robot_chain.png": charted(
         "robot_shoulder", "chain.png", "gearing/presenting/chain.py", "gearing/presenting/chain_bars.py"
     ),

@@ -32,6 +32,7 @@ BY_DIMENSIONS = {
     ("spherical_drive", "screw 1"): "ball_screw",
     ("spherical_drive", "ring"): "thrust_ring",
     ("stewart", "foot 1"): "ball_socket",
+    ("robot_arm", "link 1"): "cast_link",
 }
 GEARS = {"gear 1": "tooth", "gear 2": "space"}
 
@@ -49,6 +50,7 @@ def test_the_page_has_a_row_with_every_field_of_every_builder() -> None:
     for kind, (dimensions, *_) in table.items():
         known = set(KINDS[kind].model_fields) - {"kind"}
         within = {"face", "spigot", "at", "length", "width", "height", "diameter", "depth", "angle"}
+        within |= {"axis", "bore", "hole", "level", "pilot"}
         assert known <= words(dimensions)
         assert words(dimensions) <= known | within
 
