@@ -110,9 +110,7 @@ class Builds:
         ):
             gear = pair.pinion
 
-            def deviation(
-                tooth: int, side: int, roll: Array, z: Array, name: str = name, pair: Any = pair
-            ) -> Array:
+            def deviation(tooth: int, side: int, roll: Array, z: Array, name: str = name, pair: Any = pair) -> Array:
                 gear, place = pair.pinion, tooth + (0 if side == 1 else pair.pinion.teeth)
                 begin = (min if isinstance(gear, InternalGear) else max)(gear.form_roll, pair.start_roll)
                 along = (roll - begin) / (gear.tip_roll - begin) - 0.5

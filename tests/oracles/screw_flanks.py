@@ -95,9 +95,7 @@ class ScrewGear:
         """Radius [mm] of the point without deviation that came to a radius and height along its tangent."""
         if self.deviation is no_deviation:
             return radius
-        roll = np.sqrt(np.maximum((radius / self.base) ** 2 - 1, 0.0)) - self.out * self.further(
-            radius, z, side, tooth
-        )
+        roll = np.sqrt(np.maximum((radius / self.base) ** 2 - 1, 0.0)) - self.out * self.further(radius, z, side, tooth)
         return np.asarray(np.where(roll > 0.0, self.base * np.hypot(1.0, roll), 0.0))
 
     def further(self, radius: Array, z: Array, side: int, tooth: int) -> Array:
@@ -166,9 +164,9 @@ def lag_at(
         azimuth = np.arctan2(points[..., 1], points[..., 0])
         middle = turns[1] + 2 * math.pi * teeth[1] / mate.teeth + mate.twist * points[..., 2]
         off = np.remainder(azimuth - middle + math.pi, 2 * math.pi) - math.pi
-        half = mate.half_angle(rho) + mate.further(rho, points[..., 2], side, teeth[1])
+        half = mate.half_angle(rho) + mate.further(rho, points[..., 2], mating, teeth[1])
         found = mate.base * (-mating * off - half)
-        own = mate.before(rho, points[..., 2], side, teeth[1])
+        own = mate.before(rho, points[..., 2], mating, teeth[1])
         first, last = (mate.tip, mate.ends[1]) if mate.inside else (mate.base, mate.tip)
         outside = (own > last) | (own < first) | (np.abs(points[..., 2]) > mate.face / 2)
         return np.where(outside, np.inf, found)

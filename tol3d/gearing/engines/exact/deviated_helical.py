@@ -191,9 +191,7 @@ def offset_on(tooth: Any, roll: float, z: float) -> Offset:
 
 
 @variant(foot, DeviatedHelicalTooth)
-def deviated_screw_foot(
-    deviated_tooth: Any, mate: Any, pose: Pose, facing: Facing, roll: float, z: float
-) -> Foot:
+def deviated_screw_foot(deviated_tooth: Any, mate: Any, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
     """See foot.foot: for the point of own deviated flank, the gap is reduced by the mate's offset at the foot.
 
     As the point rolls on by dt the foot goes back by r_b t dt over the radius of curvature of the mate's section; along
@@ -254,9 +252,7 @@ def deviated_screw_turn(mate: Any, gap: float, offset: float, at: Foot) -> float
 
 
 @variant(line_of_action, DeviatedHelicalTooth)
-def deviated_screw_line_of_action(
-    deviated_tooth: Any, mate: Any, pose: Pose, facing: Facing, face: float
-) -> Nearest:
+def deviated_screw_line_of_action(deviated_tooth: Any, mate: Any, pose: Pose, facing: Facing, face: float) -> Nearest:
     """Nearest points of parallel screw surfaces as for HelicalTooth, but with the pair's own gap; else nowhere."""
     own_azimuth, mate_azimuth, sigma, offset = facing
     out = deviated_tooth.level + mate.level
@@ -289,9 +285,7 @@ class Lowest(NamedTuple):
 
 
 @part
-def lowest_at(
-    own: Any, mate: Any, pose: Pose, facing: Facing, roll: float, z: float
-) -> Lowest:
+def lowest_at(own: Any, mate: Any, pose: Pose, facing: Facing, roll: float, z: float) -> Lowest:
     """The lowest gap at a height [mm], across the generators from a roll [rad]."""
     roll = min(max(roll, own.begin), own.end)
     gap, profile, face = 0.0, 0.0, 0.0
@@ -304,9 +298,7 @@ def lowest_at(
 
 
 @variant(begun, DeviatedHelicalTooth)
-def deviated_screw_begun(
-    deviated_tooth: Any, mate: Any, pose: Pose, facing: Facing, roll: float, z: float
-) -> Start:
+def deviated_screw_begun(deviated_tooth: Any, mate: Any, pose: Pose, facing: Facing, roll: float, z: float) -> Start:
     """The lower end of the contact line; the start stays where there is none.
 
     Along the line on which the flanks of both gears lie all offsets and leans are straight.
