@@ -194,8 +194,9 @@ def aside(
     """Additional loss by a pair whose flanks slope and so touch beside the line of action [mm]; slopes [mm/rad].
 
     As the driver's point rolls on by dt, the foot on the mate rolls back by rho_1/rho_2 dt, and both flanks curve away
-    by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2), a ring's radius negative: with a slope g they touch g/b further on and lose g^2/(2 b) more, or
-    less if a flank ends before. Beyond the path of contact the way of an edge beyond its end counts, too.
+    by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2), a ring's radius negative: with a slope g they touch g/b further on and
+    lose g^2/(2 b) more, or less if a flank ends before. Beyond the path of contact the way of an edge beyond its end
+    counts, too.
     """
     if slope == 0.0 and mate_slope == 0.0:
         return 0.0

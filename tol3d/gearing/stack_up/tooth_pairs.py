@@ -211,7 +211,8 @@ class ToothPairs:
     def _shifts(self, side: int, moved: Moved | None) -> Array:
         """Change by moved axes and flanks of a tooth's roll on the line of centres [rad] and of the tangent [mm].
 
-        (rows, 2), of helical gears (rows, 3) with the driven teeth's shift along the axes [mm]; flanks of wider teeth meet as much earlier as they stand further out.
+        (rows, 2), of helical gears (rows, 3) with the driven teeth's shift along the axes [mm]; flanks of wider teeth
+        meet as much earlier as they stand further out.
 
         Axes that stand dx further apart touch at a pressure angle that is dx/(a tan alpha_w) larger, along a tangent
         that is dx/sin(alpha_w) longer; a line of centres that turns by dy/a takes the path of contact along.
