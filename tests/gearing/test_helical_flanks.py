@@ -56,6 +56,9 @@ tolerances:
 )
 RING_DRIVES = (IN_RING[0], IN_RING[1].replace("driver: pinion, driven: wheel", "driver: wheel, driven: pinion"))
 PAIRS = {"external": EXTERNAL, "in a ring": IN_RING, "ring drives": RING_DRIVES}
+SQUARES = {"external": (0.03, 0.15), "in a ring": (0.1, 0.6), "ring drives": (0.1, 0.6)}
+"""Rms and largest [um] of what goes with squares of slopes. Two slopes of 6 um that add up take g^2/(2 b) = 0.1 um where
+flanks bend apart by b = 7.9 mm per square of the roll, as the external pair's do, and 0.2 um by 3.1 mm in the ring."""
 ALL_PAIRS = pytest.mark.parametrize("pair", PAIRS)
 WALK = "limits: {iso_class: 7}, law: {kind: random_walk, fill: [0.7, 1]}"
 FREE = "each: tooth, limits: {iso_class: 7}, law: {kind: uniform}"
@@ -182,27 +185,31 @@ def test_the_stack_up_agrees_trial_by_trial_to_the_second_order(
         ):
             off.append(stack.normal_backlash(part * builds.deviations, builds.angle, turns) - values)  # type: ignore[arg-type]
     rms = 1e3 * np.sqrt((np.array(off) ** 2).mean(axis=1)).reshape(2, 3)  # um
-    assert (rms[0] < 0.03).all(), rms
+    assert (rms[0] < SQUARES[pair][0]).all(), rms
     assert ((rms[1] < rms[0] / 2**1.5) | (rms[1] < 1e-3)).all(), rms
     assert 1e3 * builds.read().gap.std() > 1.0  # um: what both methods follow
 
 
 @pytest.mark.slow
+@ALL_PAIRS
 @pytest.mark.parametrize(
     "kinds", [("pitch_deviation",), ("profile_slope",), ("helix_slope",), ("pitch_deviation", *SLOPES)]
 )
-def test_strips_of_deviated_flanks_touch_within_their_chord_error(kinds: tuple[str, ...], tmp_path: Path) -> None:
+def test_strips_of_deviated_flanks_touch_within_their_chord_error(
+    kinds: tuple[str, ...], pair: str, tmp_path: Path
+) -> None:
     """Chords lie inside the teeth: the driven gear turns on by up to both errors, and its gap is wider by up to four.
 
     Helix slopes alone take 5 to 9 um here, so that ends moved by half of it, or alike, would stand out.
     """
-    builds = drawn(tolerances(*kinds), tmp_path, 8)
+    builds = drawn(tolerances(*kinds), tmp_path, 8, pair=pair)
     strips = {part.name: measuring_strips(part.gear, 128) for part in builds.model.gears}
     made = ExactEngine(builds.model).build(builds.deviations)
     engine = fcl_engine(builds.model, strips)
     seat, exact = Meshing(engine, builds.model, builds.mesh, made, Reading()).seat(builds.angle), builds.read()
     assert (seat.status == 0).all()
-    turned = builds.pair.wheel.section_arm * (seat.driven_angle - exact.driven_angle) * -builds.mesh.working_flank
+    sense = -builds.pair.mating_flank(builds.mesh.working_flank)
+    turned = builds.pair.wheel.section_arm * (seat.driven_angle - exact.driven_angle) * sense
     wider = seat.non_working.smallest() - exact.gap
     chord, pulled = sum(own.chord_error for own in strips.values()), 0.0073e-3  # mm; a touching edge's slack, in fcl.py
     for off, errors in ((turned, chord), (wider, 2 * chord)):
@@ -211,10 +218,11 @@ def test_strips_of_deviated_flanks_touch_within_their_chord_error(kinds: tuple[s
     assert np.ptp(exact.gap) > 40 * chord  # what both follow
 
 
-def test_transmission_error_of_both_sides_follows_single_flanks(tmp_path: Path) -> None:
+@ALL_PAIRS
+def test_transmission_error_of_both_sides_follows_single_flanks(pair: str, tmp_path: Path) -> None:
     """The exact rests of both sides less their nominal turns, over 400 positions of a turn, are the stack-up's."""
-    builds = drawn(tolerances("pitch_deviation", *SLOPES), tmp_path, 2)
-    engine, mesh, pair = ExactEngine(builds.model), builds.mesh, builds.pair
+    builds = drawn(tolerances("pitch_deviation", *SLOPES), tmp_path, 2, pair=pair)
+    engine, mesh, gears = ExactEngine(builds.model), builds.mesh, builds.pair
     angles = np.linspace(0.0, 2 * math.pi, 400, endpoint=False)
     stack = stack_of(builds.model, mesh, Reading())
     for side, rests in zip(
@@ -223,11 +231,11 @@ def test_transmission_error_of_both_sides_follows_single_flanks(tmp_path: Path) 
         strict=True,
     ):
         assert (rests.status == 0).all()
-        exact = (rests.driven_angle - pair.driven_angle(angles)) * pair.wheel.section_arm
-        exact = exact + side * pair.normal_backlash / 2
+        exact = (rests.driven_angle - gears.driven_angle(angles)) * gears.wheel.section_arm
+        exact = exact + gears.mating_flank(side) * gears.normal_backlash / 2
         off = 1e3 * (exact - stack.turned_by_teeth(side, builds.deviations, angles))
-        assert np.sqrt((off**2).mean()) < 0.03  # um, as the backlash of all of these
-        assert np.abs(off).max() < 0.15
+        assert np.sqrt((off**2).mean()) < SQUARES[pair][0]  # as the backlash of all of these
+        assert np.abs(off).max() < SQUARES[pair][1]
         assert 1e3 * np.ptp(exact) > 5.0
 
 

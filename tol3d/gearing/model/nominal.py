@@ -100,7 +100,7 @@ class Nominal:
             raise self.scene.refuse(("tolerances", name), str(error)) from error
 
     def _active_roll(self, name: str, gear: CylindricalGear) -> float:
-        """Roll [rad] at which a gear's active profile begins: nearest to its root, where a mate's nominal tip touches it.
+        """Roll [rad] at which a gear's active profile begins: where a mate's nominal tip touches nearest to its root.
 
         The least of an external gear, the largest of a ring.
         """
