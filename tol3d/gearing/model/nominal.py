@@ -104,11 +104,10 @@ class Nominal:
 
         The least of an external gear, the largest of a ring.
         """
-        found = []
+        found, sense = list[float](), gear.iso_sign
         for mesh in (self.meshes[own] for own in meshes_of(name, self.scene.moves)):
             pair = mesh.pair
             if isinstance(pair, CylindricalPair):
                 own = pair if name == mesh.driver else type(pair)(pair.wheel, pair.pinion, pair.centre_distance)
                 found.append(own.start_roll)
-        sense = gear.iso_sign
         return sense * max(sense * gear.form_roll, min(sense * roll for roll in found or [gear.form_roll]))

@@ -157,7 +157,7 @@ def deviated_screw_section(tooth: Any, share: float) -> Any:
 
 
 @variant(leaning, DeviatedHelicalTooth)
-def deviated_screw_leaning(tooth: Any, sigma: float) -> float:
+def deviated_screw_leaning(tooth: Any, sigma: float) -> Any:
     """dt/dz = -sigma kappa along a generator."""
     return sense_of(tooth) * sigma * tooth.twist
 
@@ -238,7 +238,7 @@ def deviated_screw_foot(deviated_tooth: Any, mate: Any, pose: Pose, facing: Faci
 
 
 @variant(turn_to, DeviatedHelicalTooth)
-def deviated_screw_turn(mate: Any, gap: float, offset: float, at: Foot) -> float:
+def deviated_screw_turn(mate: Any, gap: float, offset: float, at: Foot) -> Any:
     """As flanks of HelicalTooth; on the way the foot comes to where the mate stands out by another length."""
     turn = gap * mate.per_arm
     if is_level(mate):
