@@ -106,7 +106,8 @@ class Builds:
     def screws(self, row: int) -> tuple[Placed, Placed]:
         """The oracle's gears of a build, deviating as the words of the tolerances have it."""
         found = []
-        turned = type(self.pair)(self.pair.wheel, self.pair.pinion, self.pair.centre_distance)
+        kind: Any = type(self.pair)
+        turned = kind(self.pair.wheel, self.pair.pinion, self.pair.centre_distance)
         for name, pair, at in (
             (self.mesh.driver, self.pair, np.zeros(3)),
             (self.mesh.driven, turned, self.pair.wheel_origin),

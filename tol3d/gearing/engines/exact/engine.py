@@ -228,7 +228,7 @@ def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
     pinion, wheel, numbers, nominal = alike.numbers
     gears: tuple[tuple[str, SpurTooth | HelicalTooth | InternalHelicalTooth], ...]
     gears = ((mesh.driver, pinion), (mesh.driven, wheel))
-    kind, *own_kernels = DEVIATED[type(pinion)]
+    kind, read, gaps, rests = DEVIATED[type(pinion)]
     places: list[int] = []
     teeth: list[Any] = []
     for name, own in gears:
@@ -245,7 +245,9 @@ def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
     numbers = numbers._replace(lowest=numbers.lowest - beyond, highest=numbers.highest + beyond)
     return PairKernels(
         (teeth[0], teeth[1], numbers, nominal),
-        *own_kernels,
+        read,
+        gaps,
+        rests,
         np.array(places, dtype=np.int64),
         standing_out(mesh.pair, margin),
     )

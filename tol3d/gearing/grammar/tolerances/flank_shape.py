@@ -89,13 +89,14 @@ def profile_part(diameters: Range | None, gear: CylindricalGear, active_roll: fl
     if diameters is None:
         return Part(active_roll, active_roll + share * (most - active_roll), least, most)
     inner, outer = (diameter.internal for diameter in diameters)
-    ends = 2 * gear.form_radius, 2 * gear.tip_radius
+    ends = (2 * gear.form_radius, 2 * gear.tip_radius)[:: gear.iso_sign]
     if not ends[0] - AT_END <= inner < outer <= ends[1] + AT_END:
+        first, last = ("where the involute begins", "its tip")[:: gear.iso_sign]
         raise GeometryError(
-            f"range: expected two diameters from {ends[0]:.4f} mm, where the involute begins, to {ends[1]:.4f} mm, its "
-            f"tip, got {inner:g} mm and {outer:g} mm"
+            f"range: expected two diameters from {ends[0]:.4f} mm, {first}, to {ends[1]:.4f} mm, {last}, "
+            f"got {inner:g} mm and {outer:g} mm"
         )
-    begin, end = (gear.roll_at(min(max(own, ends[0]), ends[1]) / 2) for own in (inner, outer))
+    begin, end = (gear.roll_at(min(max(own, ends[0]), ends[1]) / 2) for own in (inner, outer)[:: gear.iso_sign])
     return Part(begin, end, least, most)
 
 
