@@ -126,8 +126,11 @@ def test_a_wrong_pair_is_refused_with_what_is_wrong(tmp_path: Path, parts: str, 
 def test_single_flanks_are_refused_beside_a_ring(tmp_path: Path) -> None:
     walk = "limits: {iso_class: 6}, law: {kind: random_walk, fill: [0.7, 1]}"
     for gear, words in (
-        ("inner", "expected a gear that meshes with external gears only, got 'inner', which meshes with the internal"),
-        ("ring", "expected the name of a spur gear or a helical gear, got 'ring', which is an internal gear"),
+        (
+            "inner",
+            "expected a helical gear, or a gear that meshes with external gears only, got 'inner', which meshes",
+        ),
+        ("ring", "expected a helical gear or an external one, got 'ring', a ring of straight teeth"),
     ):
         tolerance = f"tolerances:\n  teeth: {{kind: pitch_deviation, of: {gear}, flanks: each, {walk}}}\n"
         with pytest.raises(SceneError, match=words):

@@ -95,24 +95,24 @@ class ScrewGear:
         """Radius [mm] of the point without deviation that came to a radius and height along its tangent."""
         if self.deviation is no_deviation:
             return radius
-        roll = np.sqrt(np.maximum((radius / self.base) ** 2 - 1, 0.0)) - self.further(radius, z, side, tooth)
+        roll = np.sqrt(np.maximum((radius / self.base) ** 2 - 1, 0.0)) - self.out * self.further(radius, z, side, tooth)
         return np.asarray(np.where(roll > 0.0, self.base * np.hypot(1.0, roll), 0.0))
 
     def further(self, radius: Array, z: Array, side: int, tooth: int) -> Array:
         """Angle [rad] by which a flank stands out of its tooth: along the base tangent an involute comes to one turned.
 
-        There it is as much further on the tangent as the deviation of the point from which it came.
+        There it is as much further on the tangent as the deviation of the point from which it came; of a ring, back.
         """
         roll, angle = np.sqrt(np.maximum((radius / self.base) ** 2 - 1, 0.0)), np.zeros(1)
         for _ in range(1 if self.deviation is no_deviation else 4):
-            angle = self.deviation(tooth % self.teeth, side, roll - angle, z) / self.base
+            angle = self.deviation(tooth % self.teeth, side, roll - self.out * angle, z) / self.base
         return angle
 
     def points(self, radius: Array, z: Array, side: int, tooth: int, turn: float) -> Array:
         """Points (..., 3) [mm] of a flank; side 1 is the right one, on the low-azimuth side of its tooth."""
         roll = np.sqrt(np.maximum((radius / self.base) ** 2 - 1, 0.0))
         off = self.deviation(tooth % self.teeth, side, roll, z) / self.base
-        radius = self.base * np.hypot(1.0, roll + off) if self.deviation is not no_deviation else radius
+        radius = self.base * np.hypot(1.0, roll + self.out * off) if self.deviation is not no_deviation else radius
         half = self.half_angle(radius) + off
         azimuth = turn + 2 * math.pi * tooth / self.teeth + self.twist * z - side * half
         return np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), z], axis=-1)
@@ -164,9 +164,9 @@ def lag_at(
         azimuth = np.arctan2(points[..., 1], points[..., 0])
         middle = turns[1] + 2 * math.pi * teeth[1] / mate.teeth + mate.twist * points[..., 2]
         off = np.remainder(azimuth - middle + math.pi, 2 * math.pi) - math.pi
-        half = mate.half_angle(rho) + mate.further(rho, points[..., 2], side, teeth[1])
+        half = mate.half_angle(rho) + mate.further(rho, points[..., 2], mating, teeth[1])
         found = mate.base * (-mating * off - half)
-        own = mate.before(rho, points[..., 2], side, teeth[1])
+        own = mate.before(rho, points[..., 2], mating, teeth[1])
         first, last = (mate.tip, mate.ends[1]) if mate.inside else (mate.base, mate.tip)
         outside = (own > last) | (own < first) | (np.abs(points[..., 2]) > mate.face / 2)
         return np.where(outside, np.inf, found)
@@ -187,14 +187,14 @@ def lag_in_slices(
     half = gear.face / 2
 
     def of_slices(z: Array) -> Array:
-        first, last = np.full((len(z), 1), gear.base * 1.0001), np.full((len(z), 1), gear.tip)
+        first, last = (np.full((len(z), 1), end) for end in gear.ends)
         best = np.full(len(z), np.inf)
         for _ in range(ROUNDS):
             radius = first + (last - first) * np.linspace(0.0, 1.0, GRID)
             values = apart(radius, np.broadcast_to(z[:, None], radius.shape))
             best = np.minimum(best, values.min(axis=1))
             middle, reach = np.take_along_axis(radius, values.argmin(axis=1)[:, None], axis=1), (last - first) * SHRINK
-            first, last = np.maximum(middle - reach, gear.base * 1.0001), np.minimum(middle + reach, gear.tip)
+            first, last = np.maximum(middle - reach, gear.ends[0]), np.minimum(middle + reach, gear.ends[1])
         return best
 
     heights, step = np.linspace(-half, half, SLICES), gear.face / (SLICES - 1)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.builds.displacements import FlankOffsets, displacements
 from tol3d.gearing.effects import FORM, SHAPES, SLOPE, UNIFORM, FlankDeviation
 from tol3d.gearing.model import Mesh, Model
-from tol3d.gears import SpurGear
+from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.flank import RIGHT, Flank
 from tol3d.numerics.arrays import Array
 
@@ -69,7 +69,7 @@ class FlankPlaces:
         spans: dict[str, tuple[float, float]] = {}
         count = 0
         for _, effect in acting:
-            gear = _spur_gear(model, effect.part)
+            gear = _cylindrical_gear(model, effect.part)
             if effect.part not in starts:
                 starts[effect.part], waves[effect.part] = count, 0.0
                 spans[effect.part] = gear.form_roll, gear.tip_roll
@@ -80,7 +80,7 @@ class FlankPlaces:
         terms: list[tuple[int, int]] = []
         factors: list[float] = []
         for first, effect in acting:
-            gear, start = _spur_gear(model, effect.part), starts[effect.part]
+            gear, start = _cylindrical_gear(model, effect.part), starts[effect.part]
             for component, place, shape, factor in effect.terms:
                 slot = start + int(flank_slot(gear.teeth, place.tooth, place.flank))
                 for own, share in _over(spans[effect.part], gear, shape):
@@ -120,7 +120,7 @@ class FlankPlaces:
         gear = model.gear(own.gear).gear
         matrix = np.zeros((self.count, model.component_count))
         np.add.at(matrix, (self.slots, self.components), self.factors)
-        if own.gear not in self.starts or not isinstance(gear, SpurGear):
+        if own.gear not in self.starts or not isinstance(gear, CylindricalGear):
             return np.zeros((len(teeth), model.component_count))
         roll, height = place
         begin, end = self.spans[own.gear]
@@ -141,13 +141,13 @@ class FlankPlaces:
         total = np.zeros((len(made.values), 2))  # of right and left flanks
         for gear in gears:
             if gear in self.starts:
-                teeth = _spur_gear(model, gear).teeth
+                teeth = _cylindrical_gear(model, gear).teeth
                 own = made.values[:, self.starts[gear] :][:, : 2 * SHAPES * teeth].reshape(-1, teeth, 2, SHAPES)
-                least, most = self._extremes(_spur_gear(model, gear), gear, own)
+                least, most = self._extremes(_cylindrical_gear(model, gear), gear, own)
                 total += np.maximum(*((most - np.roll(least, by, axis=1)).max(axis=1) for by in (1, -1)))
         return np.asarray(total.max(axis=1))
 
-    def _extremes(self, gear: SpurGear, name: str, own: Array) -> tuple[Array, Array]:
+    def _extremes(self, gear: CylindricalGear, name: str, own: Array) -> tuple[Array, Array]:
         """Bounds of the least and largest offset of flanks (…, SHAPES) anywhere [mm]."""
         begin, end = self.spans[name]
         ends = [(roll - (begin + end) / 2) / (end - begin) for roll in (gear.form_roll, gear.tip_roll)]
@@ -162,14 +162,14 @@ class FlankPlaces:
         return np.minimum.reduce(rows) - beside, np.maximum.reduce(rows) + beside
 
 
-def _spur_gear(model: Model, name: str) -> SpurGear:
+def _cylindrical_gear(model: Model, name: str) -> CylindricalGear:
     gear = model.gear(name).gear
-    if not isinstance(gear, SpurGear):
-        raise TypeError(f"{name} is no spur gear")
+    if not isinstance(gear, CylindricalGear):
+        raise TypeError(f"{name} is no cylindrical gear")
     return gear
 
 
-def _over(span: tuple[float, float], gear: SpurGear, shape: int) -> Iterator[tuple[int, float]]:
+def _over(span: tuple[float, float], gear: CylindricalGear, shape: int) -> Iterator[tuple[int, float]]:
     """A shape over the whole involute by those over a span of it: u of one is a share of the other's, and a level."""
     whole, begin, end = gear.tip_roll - gear.form_roll, *span
     yield shape, (end - begin) / whole if shape == SLOPE else 1.0

@@ -26,7 +26,8 @@ from tol3d.gearing.builds.flank_offsets import FlankPlaces, flank_slot
 from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
 from tol3d.gearing.engines.gaps import Gaps, Teeth
 from tol3d.gearing.model import Mesh, Model
-from tol3d.gears import Flank, SpurGear
+from tol3d.gears import Flank
+from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.numerics import frames
 from tol3d.numerics.arrays import Array
 
@@ -68,7 +69,7 @@ class DeviatedStrips:
             return strips
         begin, end = self.places.spans[gear]
         own, normals = self.model.gear(gear).gear, strips.normals[flank]
-        if isinstance(own, SpurGear) and own.helix_angle:
+        if isinstance(own, CylindricalGear) and own.helix_angle:
             # along a generator roll and height change: each end is moved by what it is there, a straight change
             moved = []
             for ends in (strips.inner, strips.outer):

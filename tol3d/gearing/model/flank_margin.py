@@ -7,7 +7,8 @@ import numpy as np
 
 from tol3d.gearing.effects import SHAPES, FlankDeviation
 from tol3d.gearing.model import Mesh, Model
-from tol3d.gears import GearPair, SpurGear
+from tol3d.gears import GearPair, InternalPair
+from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.flank import RIGHT
 
 MARGINS: Final = (0.35, 0.6, 0.85)
@@ -25,15 +26,18 @@ def standing_out(pair: GearPair, margin: float) -> float:
 
     Where the path of contact ends, a tip edge leaves its mate by s^2 rho T/(2 r_b^2 rho_m), s the arc on the base
     circle by which the gears have turned on, rho and rho_m the radii of curvature of tip and mate, T = rho + rho_m,
-    in the transverse section.
+    in the transverse section; in a ring T is the difference of both.
     """
     tangent = sum(pair.working_radii) * math.sin(pair.working_pressure_angle)
+    if isinstance(pair, InternalPair):
+        tangent = pair.centre_distance * math.sin(pair.working_pressure_angle)
     found = math.inf
     for gear in (pair.pinion, pair.wheel):
-        if not isinstance(gear, SpurGear):
-            raise TypeError("single flanks deviate of external cylindrical gears only")
+        if not isinstance(gear, CylindricalGear):
+            raise TypeError("single flanks deviate of cylindrical gears only")
         tip, turned = gear.base_radius * gear.tip_roll, margin * gear.transverse_base_pitch
-        found = min(found, turned**2 * tip * tangent / (2 * gear.base_radius**2 * (tangent - tip)))
+        mating = tip + gear.iso_sign * tangent if isinstance(pair, InternalPair) else tangent - tip
+        found = min(found, turned**2 * tip * tangent / (2 * gear.base_radius**2 * mating))
     return found * pair.base_helix_cosine
 
 

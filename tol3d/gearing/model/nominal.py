@@ -11,7 +11,9 @@ from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceS
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.model import Contributor
 from tol3d.gearing.shafts import Carried, Mesh
-from tol3d.gears import BevelPair, SpurGear, SpurPair
+from tol3d.gears import BevelPair
+from tol3d.gears.cylindrical_gear import CylindricalGear
+from tol3d.gears.cylindrical_pair import CylindricalPair
 from tol3d.scene import Scene
 from tol3d.scene.bases import ToleranceEntry
 from tol3d.scene.temperature import TemperatureSpec
@@ -88,8 +90,8 @@ class Nominal:
 
     def _of_flanks(self, name: str, spec: FlankToleranceSpec) -> Contributor:
         gear = self.mesh_of(spec.of).gear(spec.of)
-        if not isinstance(gear, SpurGear):
-            raise TypeError(f"{spec.of} is no spur gear")
+        if not isinstance(gear, CylindricalGear):
+            raise TypeError(f"{spec.of} is no cylindrical gear")
         try:
             draw = spec.draw(gear, self.scene.files)
             effect = spec.effect(gear, self._active_roll(spec.of, gear))
@@ -97,11 +99,15 @@ class Nominal:
         except GeometryError as error:
             raise self.scene.refuse(("tolerances", name), str(error)) from error
 
-    def _active_roll(self, name: str, gear: SpurGear) -> float:
-        """Roll at which a gear's active profile begins: the least at which a mate's nominal tip touches it [rad]."""
-        found = []
+    def _active_roll(self, name: str, gear: CylindricalGear) -> float:
+        """Roll [rad] at which a gear's active profile begins: where a mate's nominal tip touches nearest to its root.
+
+        The least of an external gear, the largest of a ring.
+        """
+        found, sense = list[float](), gear.iso_sign
         for mesh in (self.meshes[own] for own in meshes_of(name, self.scene.moves)):
             pair = mesh.pair
-            if isinstance(pair, SpurPair):
-                found.append((pair if name == mesh.driver else pair.mirrored).start_roll)
-        return max(gear.form_roll, min(found, default=gear.form_roll))
+            if isinstance(pair, CylindricalPair):
+                own = pair if name == mesh.driver else type(pair)(pair.wheel, pair.pinion, pair.centre_distance)
+                found.append(own.start_roll)
+        return sense * max(sense * gear.form_roll, min(sense * roll for roll in found or [gear.form_roll]))

@@ -125,10 +125,11 @@ class HelicalStack(SpurStack):
         alpha, half = self.pair.working_pressure_angle, self.pair.common_face / 2
         apart = -(leans[1] + leans[-1]) / (2 * self.sin * half)
         aside = (leans[1] - leans[-1]) / (2 * self.cos * half)
+        first, second = self.pair.pinion.iso_sign, self.pair.wheel.iso_sign
         found = {}
         for side, lean in leans.items():
-            rolls = (apart / math.tan(alpha) + side * aside) / self.pair.centre_distance
-            outwards = apart * math.cos(alpha) + side * aside * math.sin(alpha)
+            rolls = second * (apart / math.tan(alpha) + side * aside) / self.pair.centre_distance
+            outwards = first * (apart * math.cos(alpha) + side * aside * math.sin(alpha))
             found[side] = np.stack([lean, strain, rolls, apart / math.sin(alpha), outwards], axis=-1)
         return found
 

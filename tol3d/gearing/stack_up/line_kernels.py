@@ -23,11 +23,13 @@ from tol3d.gearing.stack_up.tooth_kernels import (
     Flank,
     GearTeeth,
     LineOfContact,
+    TeethInRing,
     flank_in,
+    sense_of,
     taken_by,
 )
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.compiled import QUICK, kernel, part
+from tol3d.numerics.compiled import QUICK, Kernel, part
 
 Integers = NDArray[np.int64]
 
@@ -96,9 +98,16 @@ def taken_on_lines(
     """Loss of backlash by the flanks of a side in the transverse section [mm], (rows,); as tooth_kernels.taken."""
     first, angles, lean, apart, shifts = (np.require(row, requirements=["C", "W"]) for row in rows)
     losses = np.empty(len(angles))
-    driver, driven, line = GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), ContactLine(*mesh[2])
-    take_on_lines(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, losses)
+    kind, take = (TeethInRing, take_in_rings) if len(mesh[0]) > len(GearTeeth._fields) else (GearTeeth, take_on_lines)
+    driver, driven, line = kind(*mesh[0]), kind(*mesh[1]), ContactLine(*mesh[2])
+    take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, losses)
     return losses
+
+
+@part
+def outside_of(driver: Any, driven: Any) -> float:
+    """1 of two external gears, -1 of a gear in a ring."""
+    return sense_of(driver) * sense_of(driven)
 
 
 @part
@@ -124,7 +133,7 @@ def in_slice(
         loss += row.lean * (z / line.half - row.side * line.fall * along)
     if row.aside != 0.0:  # an edge beyond the line of action touches where the lean has moved its mate along the axis
         edge = driver.base * driver.tip * max(roll - driver.tip, 0.0)
-        edge -= driven.base * driven.tip * max(mate_roll - driven.tip, 0.0)
+        edge -= outside_of(driver, driven) * driven.base * driven.tip * max(mate_roll - driven.tip, 0.0)
         loss -= row.side * line.fall * line.half * row.aside * edge
     if row.strain != 0.0:  # base pitches differ: a pair is the later the further it lies from the pitch point
         loss -= row.strain * driver.base * (row.roll - line.pitch_roll)
@@ -185,15 +194,7 @@ def most_on_line(
     return max(most, most_beyond(driver, driven, line, flank, mating, row, high, way))
 
 
-@kernel(
-    GearTeeth,
-    GearTeeth,
-    ContactLine,
-    arrays="int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], "
-    "float64[:, ::1], float64[::1], float64[:, ::1], float64[::1]",
-    level=QUICK,
-)
-def take_on_lines(
+def take_rows(
     driver: Any,
     driven: Any,
     line: Any,
@@ -214,6 +215,10 @@ def take_on_lines(
     for row in range(len(losses)):
         number, open_by, most = trial[row], apart[row] if len(apart) else 0.0, 0.0
         place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
+        mate_right, step = right, side
+        if outside_of(driver, driven) < 0.0:
+            mate_right, step = 1 - right, -side
+            mate_place = (first[row] - mate_right - which[4]) % which[6]
         again[:] = True
         took[:] = 0.0
         start, tangent, lower = line.start, line.tangent, 0.0
@@ -226,7 +231,7 @@ def take_on_lines(
             for k in range(count):
                 if again[k]:
                     flank = flank_in(numbers, number, place - side * k, which[5], right)
-                    mating = flank_in(mating_numbers, number, mate_place + side * k, which[6], right)
+                    mating = flank_in(mating_numbers, number, mate_place + step * k, which[6], mate_right)
                     azimuth = angles[row] + (first[row] - side * k) * line.pitch
                     roll, before, up = start - side * azimuth, took[k], lower
                     mate_roll = (tangent - driver.base * roll) / driven.base
@@ -253,3 +258,11 @@ def take_on_lines(
             if not looks:
                 break
         losses[row] = most
+
+
+ARRAYS = (
+    "int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], "
+    "float64[:, ::1], float64[::1], float64[:, ::1], float64[::1]"
+)
+take_on_lines = Kernel(take_rows, (GearTeeth, GearTeeth, ContactLine), ARRAYS, level=QUICK)
+take_in_rings = Kernel(take_rows, (TeethInRing, TeethInRing, ContactLine), ARRAYS, level=QUICK)

@@ -160,7 +160,7 @@ class Stack(NominalMesh[Pair]):
         trial, angles = np.repeat(np.arange(count), positions), np.tile(driver_angle, count)
         built, moved = self.teeth.built(deviations, trial), self._moved(deviations, angles, trial)
         taken = self.teeth.taken(side, built, angles, self._leans(deviations)[side], moved[side])
-        return side * taken.reshape(count, positions)
+        return np.asarray(self.sense * side * taken.reshape(count, positions))
 
     def _moved(
         self, deviations: Array, driver_angle: Array, trial: NDArray[np.int64] | None = None
@@ -223,7 +223,7 @@ class Stack(NominalMesh[Pair]):
             leans, built = self._leans(builds), self.teeth.built(builds, trial)
             moved = self._moved(deviations, driver_angle)
             right, left = (self.teeth.taken(side, built, driver_angle, leans[side], moved[side]) for side in (1, -1))
-            total = (right - left) / 2
+            total = self.sense * (right - left) / 2
         else:
             total = self._aside_by_tilts(in_plane, across, driver_angle)
         for term in self.sideways:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.compiled import QUICK, kernel, part
+from tol3d.numerics.compiled import QUICK, kernel, part, variant
 from tol3d.numerics.quick_angles import cos_and_sin
 
 Integers = NDArray[np.int64]
@@ -43,11 +43,45 @@ class GearTeeth(NamedTuple):
     wave_middle: float
 
 
+class TeethInRing(NamedTuple):
+    """Nominal flanks of a gear of an internal pair; all rolls count times its sense, from root to tip.
+
+    Args:
+        base ... wave_middle: as of GearTeeth.
+        sense: 1 of the inner gear, -1 of the ring.
+    """
+
+    base: float
+    form: float
+    tip: float
+    face: float
+    wave_rate: float
+    wave_middle: float
+    sense: float
+
+
+def sense_of(gear: Any) -> float:
+    """1 of an external gear, -1 of a ring; one variant a kind."""
+    raise NotImplementedError
+
+
+@variant(sense_of, GearTeeth)
+def external_sense(gear: GearTeeth) -> float:
+    """Rolls count as they are."""
+    return 1.0
+
+
+@variant(sense_of, TeethInRing)
+def sense_in_ring(gear: TeethInRing) -> float:
+    """Its own."""
+    return gear.sense
+
+
 class LineOfContact(NamedTuple):
     """Line of contact of a mesh's pairs.
 
     Args:
-        tangent: length of the common tangent of both base circles [mm].
+        tangent: length of the common tangent of both base circles [mm]; of an internal pair negative.
         start: roll of a driver's tooth at the line of centres [rad].
         pitch: angular pitch of the driver [rad].
         half: half width of the face that is read [mm]; 0 for a section.
@@ -127,10 +161,11 @@ def profile_at(gear: GearTeeth, flank: Flank, roll: float) -> tuple[float, float
 def met(gear: GearTeeth, mate: GearTeeth, roll: float, mate_roll: float) -> float:
     """Roll at which a flank meets the mate's tip edge, d [rad] beyond its end: an arc rho d further on.
 
-    An arc v of an involute from roll t ends at roll sqrt(t^2 + 2 v/r_b).
+    An arc v of an involute from roll t ends at roll sqrt(t^2 + 2 v/r_b), of a ring's towards its tip at less.
     """
-    arc, begin = mate.base * mate.tip * (mate_roll - mate.tip), max(roll, 0.0)
-    return math.sqrt(begin * begin + 2.0 * arc / gear.base)
+    sense, arc = sense_of(gear), sense_of(mate) * mate.base * mate.tip * (mate_roll - mate.tip)
+    begin = max(sense * roll, 0.0)
+    return sense * math.sqrt(max(begin * begin + sense * 2.0 * arc / gear.base, 0.0))
 
 
 @part
@@ -139,15 +174,17 @@ def gone(gear: GearTeeth, mate: GearTeeth, roll: float, tangent: float) -> float
 
     The edge lies r_b (e(d) + t_tip n(d)) off its gear's axis: e points to the contact of the common tangent with the
     gear's base circle, n along that tangent, both turned by d = t - t_tip. The tangent from the edge to the mate's base
-    circle has length L and touches it th further on, so that the mate's flank is L - r_bm (t_m - th) away.
+    circle has length L and touches it th further on, so that the mate's flank is L - r_bm (t_m - th) away. In an
+    internal pair both circles lie on one side of the tangent, and a ring's edge turns the other way.
     """
     beyond, base, mate_base = roll - gear.tip, gear.base, mate.base
+    sense, outside = sense_of(mate), sense_of(gear) * sense_of(mate)
     cos, sin = cos_and_sin(beyond)
-    x = base + mate_base - base * (cos - gear.tip * sin)
-    y = tangent - base * (sin + gear.tip * cos)
+    x = outside * (base + outside * mate_base - base * (cos - gear.tip * sin))
+    y = sense * (tangent - base * (sin + gear.tip * cos))
     length = math.sqrt(max(x * x + y * y - mate_base * mate_base, 0.0))
     further = math.atan2(y * mate_base - x * length, x * mate_base + y * length)
-    return length - (tangent - base * (gear.tip + beyond)) + mate_base * further
+    return sense * length - (tangent - base * (gear.tip + beyond)) + sense * mate_base * further
 
 
 @part
@@ -157,15 +194,17 @@ def aside(
     """Additional loss by a pair whose flanks slope and so touch beside the line of action [mm]; slopes [mm/rad].
 
     As the driver's point rolls on by dt, the foot on the mate rolls back by rho_1/rho_2 dt, and both flanks curve away
-    by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2): with a slope g they touch g/b further on and lose g^2/(2 b) more, or
-    less if a flank ends before. Beyond the path of contact the way of an edge beyond its end counts, too.
+    by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2), a ring's radius negative: with a slope g they touch g/b further on and
+    lose g^2/(2 b) more, or less if a flank ends before. Beyond the path of contact the way of an edge beyond its end
+    counts, too.
     """
     if slope == 0.0 and mate_slope == 0.0:
         return 0.0
-    inside = min(max(roll, driver.form, LEAST_ROLL), driver.tip)
-    mate_inside = min(max(mate_roll, driven.form, LEAST_ROLL), driven.tip)
-    rho, mate_rho = driver.base * inside, driven.base * mate_inside
-    back, bend = rho / mate_rho, rho * (rho + mate_rho) / mate_rho
+    sense, mate_sense = sense_of(driver), sense_of(driven)
+    inside = min(max(roll, driver.form, sense * max(sense * roll, LEAST_ROLL)), driver.tip)
+    mate_inside = min(max(mate_roll, driven.form, mate_sense * max(mate_sense * mate_roll, LEAST_ROLL)), driven.tip)
+    rho, mate_rho = sense * driver.base * inside, mate_sense * driven.base * mate_inside
+    back, bend = rho / mate_rho, rho * (mate_sense * rho + sense * mate_rho) / mate_rho
     steep = slope - mate_slope * back
     if steep == 0.0:
         return 0.0

@@ -25,7 +25,7 @@ from tol3d.gearing.effects import FORM, SHAPES, FlankDeviation
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading
 from tol3d.gearing.model.flank_margin import margin_of
 from tol3d.gearing.stack_up.term import Role
-from tol3d.gears import SpurGear, SpurPair
+from tol3d.gears import InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.gears.flank import RIGHT
 from tol3d.gears.pair import CONTACT_MARGIN
 from tol3d.numerics.arrays import Array
@@ -53,7 +53,7 @@ class ToothFlanks:
         acting: effects, each with the columns of its contributor in the deviations.
     """
 
-    gear: SpurGear
+    gear: SpurGear | InternalGear
     ahead: int
     acting: Sequence[tuple[slice, FlankDeviation]]
 
@@ -88,7 +88,8 @@ class ToothFlanks:
     @property
     def measures(self) -> tuple[float, ...]:
         """As tooth_kernels.GearTeeth has them."""
-        begin, end = self.gear.form_roll, self.gear.tip_roll
+        sense = self.gear.iso_sign
+        begin, end = sense * self.gear.form_roll, sense * self.gear.tip_roll
         waves, span = next(((own.waves, own.span) for _, own in self.acting if own.shape == FORM), (0.0, None))
         first, last = span or (begin, end)
         wave = 2 * math.pi * waves / (last - first), (first + last) / 2
@@ -136,7 +137,7 @@ class ToothPairs:
     `beyond` is how far beyond the path of contact pairs are looked at [pitches].
     """
 
-    pair: SpurPair
+    pair: SpurPair | InternalPair
     reading: Reading
     working_flank: int
     driver: ToothFlanks
@@ -173,7 +174,7 @@ class ToothPairs:
         """
         first, second = self.driver.gear, self.driven.gear
         half = min(first.face_width, second.face_width) / 2 if self._reads_face(side) else 0.0
-        start = self.pair.working_pressure_angle + first.base_half_angle
+        start = first.iso_sign * self.pair.working_pressure_angle + first.base_half_angle
         teeth, count = self._teeth(side, driver_angle)
         places = (self.driver.ahead, self.driven.ahead, first.teeth, second.teeth)
         line: tuple[float, ...] = (self._tangent, start, first.angular_pitch, half)
@@ -181,10 +182,11 @@ class ToothPairs:
         if first.helix_angle:
             fall = first.hand * math.tan(first.base_helix_angle) / half
             up = first.hand * math.sin(first.base_helix_angle) * cosine
-            line = (*line, first.twist, fall, math.tan(self.pair.working_pressure_angle), cosine**2, up)
+            at_pitch = first.iso_sign * math.tan(self.pair.working_pressure_angle)
+            line = (*line, first.twist, fall, at_pitch, cosine**2, up)
             kernel = importlib.import_module(LINE_KERNELS).taken_on_lines
         found: Array = kernel(
-            (self.driver.measures, self.driven.measures, line),
+            (*self._measures, line),
             (side, WHO_TURNS[turns], count, *places),
             (built.driver, built.driven, built.trial) if cosine == 1.0 else built.in_section(cosine),
             (
@@ -197,10 +199,20 @@ class ToothPairs:
         )
         return found * cosine
 
+    @property
+    def _measures(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """As tooth_kernels.GearTeeth, or TeethInRing, has those of driver and driven."""
+        gears = (self.driver, self.driven)
+        if isinstance(self.pair, SpurPair):
+            return gears[0].measures, gears[1].measures
+        first, second = ((*own.measures, float(own.gear.iso_sign)) for own in gears)
+        return first, second
+
     def _shifts(self, side: int, moved: Moved | None) -> Array:
         """Change by moved axes and flanks of a tooth's roll on the line of centres [rad] and of the tangent [mm].
 
-        (rows, 2), of helical gears (rows, 3) with the driven teeth's shift along the axes [mm]; flanks of wider teeth meet as much earlier as they stand further out.
+        (rows, 2), of helical gears (rows, 3) with the driven teeth's shift along the axes [mm]; flanks of wider teeth
+        meet as much earlier as they stand further out.
 
         Axes that stand dx further apart touch at a pressure angle that is dx/(a tan alpha_w) larger, along a tangent
         that is dx/sin(alpha_w) longer; a line of centres that turns by dy/a takes the path of contact along.
@@ -209,15 +221,15 @@ class ToothPairs:
             return np.zeros((0, 2))
         apart, aside, wider, higher = moved
         alpha, distance = self.pair.working_pressure_angle, self.pair.centre_distance
-        rolls = (apart / math.tan(alpha) + side * aside) / distance + wider
+        senses = self.driver.gear.iso_sign, self.driven.gear.iso_sign
+        rolls = (senses[1] * apart / math.tan(alpha) + side * senses[0] * aside) / distance + wider
         shifts = [rolls, apart / math.sin(alpha), *([higher] if self.driver.gear.helix_angle else [])]
         return np.stack(shifts, axis=-1)
 
     @property
     def _tangent(self) -> float:
-        """Length [mm] of the tangent of both base circles."""
-        bases = self.driver.gear.base_radius + self.driven.gear.base_radius
-        return bases * math.tan(self.pair.working_pressure_angle)
+        """Length [mm] of the tangent of both base circles; of an internal pair negative."""
+        return self.pair.base_radii * math.tan(self.pair.working_pressure_angle)
 
     def _reads_face(self, side: int) -> bool:
         return (self.reading.contact if side == self.working_flank else self.reading.gap) == "face"
@@ -232,18 +244,19 @@ class ToothPairs:
             return -np.rint(place).astype(np.int64), 1
         if self.reading.teeth == "driven":
             return (side == 1) - np.rint(place + 0.5).astype(np.int64), 1
-        working = self.pair.working_pressure_angle
+        sense = gear.iso_sign
+        working = sense * self.pair.working_pressure_angle
         leaning = abs(gear.twist) * self.pair.common_face / 2
         last_psi = working + gear.base_half_angle - self._start_roll + leaning + self.beyond * gear.angular_pitch
-        length = gear.tip_roll - self._start_roll + 2 * leaning
+        length = sense * gear.tip_roll - self._start_roll + 2 * leaning
         count = math.floor(length / gear.angular_pitch + 2 * self.beyond) + 1
         return side * np.floor(last_psi / gear.angular_pitch - side * place).astype(np.int64), count
 
     @property
     def _start_roll(self) -> float:
-        """Roll of the driver where the driven gear's tip touches."""
-        second = self.driven.gear
-        return (self._tangent - second.base_radius * second.tip_roll) / self.driver.gear.base_radius
+        """Roll of the driver where the driven gear's tip touches; a ring's negative."""
+        tip = self.driven.gear.iso_sign * self.driven.gear.tip_roll
+        return (self._tangent - self.driven.gear.base_radius * tip) / self.driver.gear.base_radius
 
 
 def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None:
@@ -254,7 +267,7 @@ def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None
         for effect in contributor.effect.singles
         if isinstance(effect, FlankDeviation) and effect.acts_in(mesh)
     ]
-    if not acting or not isinstance(mesh.pair, SpurPair):
+    if not acting or not isinstance(mesh.pair, SpurPair | InternalPair):
         return None
     driver, driven = (_flanks(model, mesh, name, acting) for name in (mesh.driver, mesh.driven))
     beyond = CONTACT_MARGIN + margin_of(model, mesh)
@@ -282,8 +295,8 @@ def pieces(trials: int, positions: int, components: int) -> Iterator[slice]:
 
 def _flanks(model: Model, mesh: Mesh, name: str, acting: Sequence[tuple[Contributor, FlankDeviation]]) -> ToothFlanks:
     gear, seat = mesh.gear(name), model.seats[model.seat_index[mesh.name, name]]
-    if not isinstance(gear, SpurGear):
-        raise TypeError(f"{name} is no spur gear")
+    if not isinstance(gear, SpurGear | InternalGear):
+        raise TypeError(f"{name} is no cylindrical gear")
     own = [(model.component_slices[one.name], effect) for one, effect in acting if effect.part == name]
     return ToothFlanks(gear, round(seat.ahead / gear.angular_pitch), own)
 

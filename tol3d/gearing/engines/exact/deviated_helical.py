@@ -9,7 +9,7 @@ order of (a slope)^2 times the offset, 1e-8 um.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tol3d.gearing.engines.exact.deviated import (
     AHEAD,
@@ -34,6 +34,7 @@ from tol3d.gearing.engines.exact.foot import (
     line_of_action,
     middle_face,
     no_promise,
+    opening,
     promise,
     section,
     turn_to,
@@ -75,23 +76,44 @@ class DeviatedHelicalTooth(NamedTuple):
     helix: float
 
 
+def sense_of(tooth: Any) -> float:
+    """1 of an external gear, -1 of a ring; one variant a kind."""
+    raise NotImplementedError
+
+
+def plain_screw(tooth: Any) -> Any:
+    """The screw involutes from which flanks deviate; one variant a kind."""
+    raise NotImplementedError
+
+
+def of_screw(tooth: Any, screw: Any, scale: float, flank: tuple[float, float, float, float]) -> Any:
+    """Deviations of other involutes: level, slope, form and helix [mm] of a flank; one variant a kind."""
+    raise NotImplementedError
+
+
 external(DeviatedHelicalTooth)
 variant(first_face, DeviatedHelicalTooth)(middle_face)
 variant(promise, DeviatedHelicalTooth)(no_promise)
 
 
-@part
-def plain_screw(tooth: DeviatedHelicalTooth) -> HelicalTooth:
-    """The screw involutes from which flanks deviate."""
+@variant(sense_of, DeviatedHelicalTooth)
+def external_sense(tooth: DeviatedHelicalTooth) -> float:
+    """Both gears' strings unwind from the inside."""
+    return 1.0
+
+
+@variant(plain_screw, DeviatedHelicalTooth)
+def external_screw(tooth: DeviatedHelicalTooth) -> HelicalTooth:
+    """Without the offsets."""
     t = tooth
     return HelicalTooth(t.base, t.per_arm, t.cosine, t.rise, t.twist, t.half, t.begin, t.end, t.low, t.high)
 
 
-@part
-def of_screw(
+@variant(of_screw, DeviatedHelicalTooth)
+def deviated_external_screw(
     tooth: DeviatedHelicalTooth, screw: HelicalTooth, scale: float, flank: tuple[float, float, float, float]
 ) -> DeviatedHelicalTooth:
-    """Deviations of other involutes: level, slope, form and helix [mm] of a flank."""
+    """With the offsets."""
     s, t = screw, tooth
     return DeviatedHelicalTooth(
         s.base,
@@ -117,33 +139,33 @@ def of_screw(
 
 
 @part
-def own_flank(tooth: DeviatedHelicalTooth) -> tuple[float, float, float, float]:
+def own_flank(tooth: Any) -> tuple[float, float, float, float]:
     """Coefficients of the flank [mm]."""
     return tooth.level, tooth.slope, tooth.form, tooth.helix
 
 
 @variant(grown, DeviatedHelicalTooth)
-def deviated_screw_grown(tooth: DeviatedHelicalTooth, scale: float) -> DeviatedHelicalTooth:
+def deviated_screw_grown(tooth: Any, scale: float) -> Any:
     """Every length grows."""
     return of_screw(tooth, grown(plain_screw(tooth), scale), scale, own_flank(tooth))
 
 
 @variant(section, DeviatedHelicalTooth)
-def deviated_screw_section(tooth: DeviatedHelicalTooth, share: float) -> DeviatedHelicalTooth:
+def deviated_screw_section(tooth: Any, share: float) -> Any:
     """One height."""
     return of_screw(tooth, section(plain_screw(tooth), share), 1.0, own_flank(tooth))
 
 
 @variant(leaning, DeviatedHelicalTooth)
-def deviated_screw_leaning(tooth: DeviatedHelicalTooth, sigma: float) -> float:
+def deviated_screw_leaning(tooth: Any, sigma: float) -> Any:
     """dt/dz = -sigma kappa along a generator."""
-    return sigma * tooth.twist
+    return sense_of(tooth) * sigma * tooth.twist
 
 
 @variant(flank_of, DeviatedHelicalTooth)
 def deviated_screw_flank(
     tooth: DeviatedHelicalTooth, flanks: FlankOffsets, gear: int, place: float, sigma: float
-) -> DeviatedHelicalTooth:
+) -> Any:
     """The flank of one tooth, with its coefficients."""
     at = PLACES * gear
     start = flanks.places[at + START]
@@ -151,14 +173,15 @@ def deviated_screw_flank(
         return tooth
     teeth = flanks.places[at + TEETH]
     own = (int(place) - flanks.places[at + AHEAD]) % teeth
-    slot = start + SHAPES * (2 * own + (0 if sigma > 0.0 else 1))
+    side = sigma if gear == 0 else sigma * opening(tooth)
+    slot = start + SHAPES * (2 * own + (0 if side > 0.0 else 1))
     values, scale = flanks.values, tooth.scale
     numbers = (scale * values[slot], scale * values[slot + 1], scale * values[slot + 2], scale * values[slot + 3])
     return of_screw(tooth, plain_screw(tooth), 1.0, numbers)
 
 
 @part
-def offset_on(tooth: DeviatedHelicalTooth, roll: float, z: float) -> Offset:
+def offset_on(tooth: Any, roll: float, z: float) -> Offset:
     """Offset of a flank at a roll [rad] and a height [mm]; beyond an end of its profile it goes on straight."""
     inside = min(max(roll, tooth.begin), tooth.end)
     at = offset_at(tooth, inside, z)
@@ -168,9 +191,7 @@ def offset_on(tooth: DeviatedHelicalTooth, roll: float, z: float) -> Offset:
 
 
 @variant(foot, DeviatedHelicalTooth)
-def deviated_screw_foot(
-    deviated_tooth: DeviatedHelicalTooth, mate: DeviatedHelicalTooth, pose: Pose, facing: Facing, roll: float, z: float
-) -> Foot:
+def deviated_screw_foot(deviated_tooth: Any, mate: Any, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
     """See foot.foot: for the point of own deviated flank, the gap is reduced by the mate's offset at the foot.
 
     As the point rolls on by dt the foot goes back by r_b t dt over the radius of curvature of the mate's section; along
@@ -180,7 +201,7 @@ def deviated_screw_foot(
     own = deviated_tooth
     first = offset_on(own, roll, z)
     on = first.value * own.per_arm
-    before = Facing(own_azimuth - sigma * on, mate_azimuth, sigma, offset)
+    before = Facing(own_azimuth - sigma * sense_of(own) * on, mate_azimuth, sigma, offset)
     at = foot(plain_screw(own), plain_screw(mate), pose, before, roll + on, z)
     # out of the foot along the normal comes what stands out along the tangent from further back on its generator
     level = offset_on(mate, at.profile, at.face).value
@@ -188,12 +209,12 @@ def deviated_screw_foot(
     profile, face = at.profile - further, at.face + level * at.nz
     second = offset_on(mate, profile, face)
     out, apart = second.value, at.gap + offset
-    tangent = max(apart * mate.cosine + mate.base * at.profile, mate.base * 1e-9)
+    tangent = max(sense_of(mate) * (apart * mate.cosine + mate.base * at.profile), mate.base * 1e-9)
     # across generators a step of the roll is r_b t cos(beta_b) long
     slope = second.by_roll / (tangent * mate.cosine)
     out += 0.5 * slope * slope * (apart - out)
-    lean, mate_lean = sigma * own.twist, sigma * mate.twist
-    back = -own.base * roll / tangent
+    lean, mate_lean = leaning(own, sigma), leaning(mate, sigma)
+    back = -own.base * sense_of(own) * roll / tangent
     along = -mate_lean * pose.zz + sigma * (at.nx * pose.yz - at.ny * pose.xz) / (tangent * mate.cosine)
     by_face = at.by_face - first.by_face + lean * first.by_roll - second.by_face * pose.zz - second.by_roll * along
     return Foot(
@@ -217,7 +238,7 @@ def deviated_screw_foot(
 
 
 @variant(turn_to, DeviatedHelicalTooth)
-def deviated_screw_turn(mate: DeviatedHelicalTooth, gap: float, offset: float, at: Foot) -> float:
+def deviated_screw_turn(mate: Any, gap: float, offset: float, at: Foot) -> Any:
     """As flanks of HelicalTooth; on the way the foot comes to where the mate stands out by another length."""
     turn = gap * mate.per_arm
     if is_level(mate):
@@ -231,9 +252,7 @@ def deviated_screw_turn(mate: DeviatedHelicalTooth, gap: float, offset: float, a
 
 
 @variant(line_of_action, DeviatedHelicalTooth)
-def deviated_screw_line_of_action(
-    deviated_tooth: DeviatedHelicalTooth, mate: DeviatedHelicalTooth, pose: Pose, facing: Facing, face: float
-) -> Nearest:
+def deviated_screw_line_of_action(deviated_tooth: Any, mate: Any, pose: Pose, facing: Facing, face: float) -> Nearest:
     """Nearest points of parallel screw surfaces as for HelicalTooth, but with the pair's own gap; else nowhere."""
     own_azimuth, mate_azimuth, sigma, offset = facing
     out = deviated_tooth.level + mate.level
@@ -266,9 +285,7 @@ class Lowest(NamedTuple):
 
 
 @part
-def lowest_at(
-    own: DeviatedHelicalTooth, mate: DeviatedHelicalTooth, pose: Pose, facing: Facing, roll: float, z: float
-) -> Lowest:
+def lowest_at(own: Any, mate: Any, pose: Pose, facing: Facing, roll: float, z: float) -> Lowest:
     """The lowest gap at a height [mm], across the generators from a roll [rad]."""
     roll = min(max(roll, own.begin), own.end)
     gap, profile, face = 0.0, 0.0, 0.0
@@ -281,9 +298,7 @@ def lowest_at(
 
 
 @variant(begun, DeviatedHelicalTooth)
-def deviated_screw_begun(
-    deviated_tooth: DeviatedHelicalTooth, mate: DeviatedHelicalTooth, pose: Pose, facing: Facing, roll: float, z: float
-) -> Start:
+def deviated_screw_begun(deviated_tooth: Any, mate: Any, pose: Pose, facing: Facing, roll: float, z: float) -> Start:
     """The lower end of the contact line; the start stays where there is none.
 
     Along the line on which the flanks of both gears lie all offsets and leans are straight.

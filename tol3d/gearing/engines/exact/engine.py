@@ -1,5 +1,6 @@
 """The exact engine: contact of the mathematical flanks, in compiled kernels; no solid, no mesh, no chord error."""
 
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
@@ -11,14 +12,18 @@ from tol3d.gearing.builds.flank_offsets import FlankPlaces
 from tol3d.gearing.engines.exact.compiled_displacements import CompiledDisplacements, compiled_displacements
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.deviated_helical import DeviatedHelicalTooth
+from tol3d.gearing.engines.exact.deviated_ring import DeviatedInternalHelicalTooth
 from tol3d.gearing.engines.exact.flank_contact import ALL_TEETH, DRIVEN_TOOTH, DRIVER_TOOTH
-from tol3d.gearing.engines.exact.helical import HelicalTooth
+from tol3d.gearing.engines.exact.helical import HelicalTooth, InternalHelicalTooth
 from tol3d.gearing.engines.exact.kernels import (
     PairKernels,
     deviated_gaps,
     deviated_helical_gaps,
     deviated_helical_read,
     deviated_helical_rests,
+    deviated_internal_helical_gaps,
+    deviated_internal_helical_read,
+    deviated_internal_helical_rests,
     deviated_read,
     deviated_rests,
     kernels_of,
@@ -31,6 +36,7 @@ from tol3d.gearing.model import Mesh, Model, Reading, TransmissionError
 from tol3d.gearing.model.flank_margin import margin_of, standing_out
 from tol3d.gears import Flank
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.compiled import Kernel
 
 Teeth = NDArray[np.int64]
 
@@ -210,32 +216,47 @@ def _array(values: NDArray[Any]) -> NDArray[Any]:
 # pairs as kernels know them: one function a kind ------------------------------------------------------
 
 
+DEVIATED: Mapping[type, tuple[Any, Kernel, Kernel, Kernel]] = {
+    SpurTooth: (DeviatedTooth, deviated_read, deviated_gaps, deviated_rests),
+    HelicalTooth: (DeviatedHelicalTooth, deviated_helical_read, deviated_helical_gaps, deviated_helical_rests),
+    InternalHelicalTooth: (
+        DeviatedInternalHelicalTooth,
+        deviated_internal_helical_read,
+        deviated_internal_helical_gaps,
+        deviated_internal_helical_rests,
+    ),
+}
+"""Teeth whose single flanks deviate, and their kernels, by those that are alike."""
+
+
 def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
     """Numbers and kernels of the pair of a mesh; where single flanks deviate, of their own variant."""
     alike = kernels_of(mesh.pair)
     if not flanks.acts_in(mesh.driver, mesh.driven):
         return alike
     pinion, wheel, numbers, nominal = alike.numbers
-    gears: tuple[tuple[str, SpurTooth | HelicalTooth], ...] = ((mesh.driver, pinion), (mesh.driven, wheel))
-    helical = isinstance(pinion, HelicalTooth)
+    gears: tuple[tuple[str, SpurTooth | HelicalTooth | InternalHelicalTooth], ...]
+    gears = ((mesh.driver, pinion), (mesh.driven, wheel))
+    kind, read, gaps, rests = DEVIATED[type(pinion)]
     places: list[int] = []
     teeth: list[Any] = []
     for name, own in gears:
         gear, seat = mesh.gear(name), model.seats[model.seat_index[mesh.name, name]]
         places += [flanks.starts.get(name, -1), gear.teeth, round(seat.ahead / gear.angular_pitch)]
-        begin, end = flanks.spans.get(name, (own.begin, own.end))
+        begin, end = flanks.spans.get(name, (gear.form_roll, gear.tip_roll))
+        if isinstance(own, InternalHelicalTooth):
+            begin, end = own.sense * begin, own.sense * end
         shape = ((begin + end) / 2, 1.0 / (end - begin), 1.0 / gear.face_width, flanks.waves.get(name, 0.0))
         each: tuple[float, ...] = (*own, 1.0, *shape, 0.0, 0.0, 0.0, 0.0)
-        teeth.append((DeviatedHelicalTooth if helical else DeviatedTooth)(*each))
+        teeth.append(kind(*each))
     margin = margin_of(model, mesh)
     beyond = margin * mesh.pair.pinion.angular_pitch
     numbers = numbers._replace(lowest=numbers.lowest - beyond, highest=numbers.highest + beyond)
-    own_kernels = (deviated_read, deviated_gaps, deviated_rests)
-    if helical:
-        own_kernels = (deviated_helical_read, deviated_helical_gaps, deviated_helical_rests)
     return PairKernels(
         (teeth[0], teeth[1], numbers, nominal),
-        *own_kernels,
+        read,
+        gaps,
+        rests,
         np.array(places, dtype=np.int64),
         standing_out(mesh.pair, margin),
     )

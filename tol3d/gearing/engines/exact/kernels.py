@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.deviated_helical import DeviatedHelicalTooth
+from tol3d.gearing.engines.exact.deviated_ring import DeviatedInternalHelicalTooth
 from tol3d.gearing.engines.exact.deviated_rows import (
     gap_deviated_rows,
     read_deviated_rows,
@@ -46,6 +47,7 @@ DEVIATED_HELICAL = (DeviatedHelicalTooth, DeviatedHelicalTooth, PairNumbers, Pos
 HELICAL = (HelicalTooth, HelicalTooth, PairNumbers, Pose)
 INTERNAL = (InternalTooth, InternalTooth, PairNumbers, Pose)
 INTERNAL_HELICAL = (InternalHelicalTooth, InternalHelicalTooth, PairNumbers, Pose)
+DEVIATED_INTERNAL_HELICAL = (DeviatedInternalHelicalTooth, DeviatedInternalHelicalTooth, PairNumbers, Pose)
 BEVEL = (BevelTooth, BevelTooth, PairNumbers, Pose)
 
 spur_read, spur_gaps = Kernel(read_rows, SPUR, READ), Kernel(gap_rows, SPUR, GAPS)
@@ -64,6 +66,9 @@ deviated_rests = Kernel(rest_deviated_rows, DEVIATED, REST_DEVIATED)
 deviated_helical_read = Kernel(read_deviated_rows, DEVIATED_HELICAL, READ_DEVIATED)
 deviated_helical_gaps = Kernel(gap_deviated_rows, DEVIATED_HELICAL, GAPS_DEVIATED)
 deviated_helical_rests = Kernel(rest_all_deviated_rows, DEVIATED_HELICAL, REST_DEVIATED)
+deviated_internal_helical_read = Kernel(read_deviated_rows, DEVIATED_INTERNAL_HELICAL, READ_DEVIATED)
+deviated_internal_helical_gaps = Kernel(gap_deviated_rows, DEVIATED_INTERNAL_HELICAL, GAPS_DEVIATED)
+deviated_internal_helical_rests = Kernel(rest_all_deviated_rows, DEVIATED_INTERNAL_HELICAL, REST_DEVIATED)
 
 
 @dataclass(frozen=True, eq=False)

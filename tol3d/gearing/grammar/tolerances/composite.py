@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, Final, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 from typing_extensions import override
@@ -11,16 +11,17 @@ from tol3d.errors import GeometryError, InputError
 from tol3d.files import Files
 from tol3d.gearing.draws.pitch_draw import tooth_names
 from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
-from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, helix_of
+from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, HelicalGearSpec, SpurGearSpec, helix_of
 from tol3d.gearing.grammar.tolerances.flank_shape import NormalShapeSpec, UniformShapeSpec
 from tol3d.gearing.grammar.tolerances.flank_tolerance import OF_CLASSES, FlankToleranceSpec, no_word
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, Nominal
 from tol3d.gearing.grammar.tolerances.gears import TeethOffAxisSpec
-from tol3d.gears import LEFT, RIGHT, Gear, SpurGear
+from tol3d.gears import LEFT, RIGHT, Gear
+from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.pair import SAME_LENGTH
 from tol3d.gears.tooth_measures import SAME_NOMINAL
 from tol3d.scene.bases import Length, MoveSpec, PartSpec
-from tol3d.scene.entry import Contradiction
+from tol3d.scene.entry import Contradiction, Entry
 from tol3d.scene.place import KeyPath
 from tol3d.statistics.distributions import Distribution, Normal, Uniform
 from tol3d.statistics.distributions.base import Stays
@@ -86,7 +87,7 @@ class CompositeLimitsSpec(Strict):
             raise refused("", "either grade or size", "neither" if self.size is None else "both")
         return self
 
-    def of(self, gear: SpurGear) -> float:
+    def of(self, gear: CylindricalGear) -> float:
         """That of a gear [mm].
 
         Raises:
@@ -108,6 +109,8 @@ class ToothToToothSpec(FlankToleranceSpec):
     pitch add to a measured f_i'' is left out. Uniform, or normal with 3 cpk sigma at f_i''/2.
     """
 
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (SpurGearSpec, HelicalGearSpec)
+
     kind: Literal["tooth_to_tooth"]
     flanks: Literal["together"] = Field(default="together", description="together: both flanks of a tooth alike")
     limits: Annotated[CompositeLimitsSpec, no_word("limits such as {grade: 7} or {size: 14 um}")] = Field(
@@ -119,7 +122,7 @@ class ToothToToothSpec(FlankToleranceSpec):
         no_word("a law such as {kind: uniform}"),
     ]
 
-    def draw(self, gear: SpurGear, files: Files) -> Draw:
+    def draw(self, gear: CylindricalGear, files: Files) -> Draw:
         """See FlankToleranceSpec: how far each tooth pushes a master gear out."""
         half = self.limits.of(gear) / 2
         own: Distribution = Uniform(-half, half)
@@ -127,7 +130,7 @@ class ToothToToothSpec(FlankToleranceSpec):
             own = Normal(0.0, half / (3 * self.law.cpk), (-half, half))
         return Each(own, tooth_names(gear.teeth, self.sides))
 
-    def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
+    def effect(self, gear: CylindricalGear, active_roll: float) -> FlankDeviation:
         """See FlankToleranceSpec: both flanks that are offset by d push a master gear out by d/sin(alpha_n)."""
         out = math.sin(gear.pressure_angle)
         teeth = range(gear.teeth)

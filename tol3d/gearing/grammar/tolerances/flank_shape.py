@@ -31,7 +31,7 @@ from tol3d.gearing.grammar.tolerances.flank_tolerance import (
     limits_of_class,
     no_word,
 )
-from tol3d.gears import SpurGear
+from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.iso1328 import FlankTolerances
 from tol3d.scene.bases import Length, scaled_law
 from tol3d.scene.entry import Entry
@@ -79,7 +79,7 @@ class Part:
         return (1 - times**2) / 3 - 4 * level**2, -8 * times * level, times**2
 
 
-def profile_part(diameters: Range | None, gear: SpurGear, active_roll: float, share: float) -> Part:
+def profile_part(diameters: Range | None, gear: CylindricalGear, active_roll: float, share: float) -> Part:
     """The part of a profile between two diameters; or a share of that from the active profile's begin to the tip.
 
     Raises:
@@ -89,17 +89,18 @@ def profile_part(diameters: Range | None, gear: SpurGear, active_roll: float, sh
     if diameters is None:
         return Part(active_roll, active_roll + share * (most - active_roll), least, most)
     inner, outer = (diameter.internal for diameter in diameters)
-    ends = 2 * gear.form_radius, 2 * gear.tip_radius
+    ends = (2 * gear.form_radius, 2 * gear.tip_radius)[:: gear.iso_sign]
     if not ends[0] - AT_END <= inner < outer <= ends[1] + AT_END:
+        first, last = ("where the involute begins", "its tip")[:: gear.iso_sign]
         raise GeometryError(
-            f"range: expected two diameters from {ends[0]:.4f} mm, where the involute begins, to {ends[1]:.4f} mm, its "
-            f"tip, got {inner:g} mm and {outer:g} mm"
+            f"range: expected two diameters from {ends[0]:.4f} mm, {first}, to {ends[1]:.4f} mm, {last}, "
+            f"got {inner:g} mm and {outer:g} mm"
         )
-    begin, end = (gear.roll_at(min(max(own, ends[0]), ends[1]) / 2) for own in (inner, outer))
+    begin, end = (gear.roll_at(min(max(own, ends[0]), ends[1]) / 2) for own in (inner, outer)[:: gear.iso_sign])
     return Part(begin, end, least, most)
 
 
-def face_part(heights: Range | None, gear: SpurGear) -> Part:
+def face_part(heights: Range | None, gear: CylindricalGear) -> Part:
     """The part of a face between two heights over its lower end, or the whole face [mm].
 
     Raises:
@@ -240,11 +241,11 @@ class FlankShapeSpec(FlankToleranceSpec):
     def of_class(self, limits: FlankTolerances) -> float:
         """The limit that a class states for this deviation [mm]."""
 
-    def _names(self, gear: SpurGear) -> tuple[str, ...]:
+    def _names(self, gear: CylindricalGear) -> tuple[str, ...]:
         return tooth_names(gear.teeth, self.sides) if self.each == "tooth" else self.sides
 
     @override
-    def draw(self, gear: SpurGear, files: Files) -> Draw:
+    def draw(self, gear: CylindricalGear, files: Files) -> Draw:
         names = self._names(gear)
         if isinstance(self.law, GivenShapeSpec):
             return self._given(self.law, names)
@@ -253,7 +254,7 @@ class FlankShapeSpec(FlankToleranceSpec):
         law = self._distribution(gear, files)
         return Scalar(law) if names == ("",) else Each(law, names)
 
-    def _distribution(self, gear: SpurGear, files: Files) -> Distribution:
+    def _distribution(self, gear: CylindricalGear, files: Files) -> Distribution:
         if isinstance(self.law, StatedShapeSpec):
             return self.law.distribution.resolve(files)
         if self.limits is None:
@@ -287,7 +288,7 @@ class FlankShapeSpec(FlankToleranceSpec):
         names = tooth_names(teeth, self.sides) if self.each == "tooth" else self.sides
         return GivenDraw(names, tuple(found), f"measured in {law.file}")
 
-    def places(self, gear: SpurGear) -> tuple[tuple[Place, ...], ...]:
+    def places(self, gear: CylindricalGear) -> tuple[tuple[Place, ...], ...]:
         """The flanks that each of its components moves, by cos(beta_b) of it along their normals."""
         teeth, cosine = range(gear.teeth), gear.base_helix_cosine
         groups = [[tooth] for tooth in teeth] if self.each == "tooth" else [list(teeth)]
@@ -315,7 +316,7 @@ class ProfileSlopeSpec(FlankShapeSpec):
         return limits.profile_slope
 
     @override
-    def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
+    def effect(self, gear: CylindricalGear, active_roll: float) -> FlankDeviation:
         mix = profile_part(self.range, gear, active_roll, 1.0).slope
         return FlankDeviation(self.of, SLOPE, self.places(gear), mix=mix)
 
@@ -350,7 +351,7 @@ class ProfileFormSpec(FlankShapeSpec):
         return limits.profile_form
 
     @override
-    def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
+    def effect(self, gear: CylindricalGear, active_roll: float) -> FlankDeviation:
         part, places = profile_part(self.range, gear, active_roll, FORM_SHARE), self.places(gear)
         if self.waves is None:
             return FlankDeviation(self.of, FORM, places, mix=part.barrel)
@@ -374,6 +375,6 @@ class HelixSlopeSpec(FlankShapeSpec):
         return limits.helix_slope
 
     @override
-    def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
+    def effect(self, gear: CylindricalGear, active_roll: float) -> FlankDeviation:
         level, times = face_part(self.range, gear).slope
         return FlankDeviation(self.of, HELIX, self.places(gear), mix=(level, 0.0, 0.0, times))

@@ -10,9 +10,9 @@ from tol3d.files import Files
 from tol3d.gearing.draws.flank_record import FlankRecord
 from tol3d.gearing.effects import Effect
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
-from tol3d.gearing.grammar.parts import HelicalGearSpec, InternalGearSpec, SpurGearSpec
+from tol3d.gearing.grammar.parts import HelicalGearSpec, InternalGearSpec, SpurGearSpec, helix_of
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
-from tol3d.gears import SpurGear
+from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.flank import LEFT, RIGHT, Flank
 from tol3d.gears.iso1328 import CLASSES, FlankTolerances, flank_tolerances
 from tol3d.scene.bases import MoveSpec, PartSpec, ToleranceEntry
@@ -74,24 +74,28 @@ IsoClass = Annotated[int, Field(ge=CLASSES[0], le=CLASSES[1])]
 
 
 class FlankToleranceSpec(AboutOne, ToleranceEntry):
-    """A tolerance of single flanks of a spur or helical gear, each tooth with deviations of its own."""
+    """A tolerance of single flanks of a spur or helical gear, or a helical ring; each tooth deviates by itself."""
 
-    applies_to: ClassVar[tuple[type[Entry], ...]] = (SpurGearSpec, HelicalGearSpec)
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (SpurGearSpec, HelicalGearSpec, InternalGearSpec)
 
-    of: Name = Field(description="the gear, a spur or helical gear")
+    of: Name = Field(description="the gear: a spur or helical gear, or a helical internal gear")
     flanks: Flanks = Field(
         description="right or left: that side of the teeth; each: both, drawn each for itself; together: whole teeth"
     )
 
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
-        """The gear meshes with external gears only."""
+        """Gears with straight teeth mesh with external gears only."""
+        if helix_of(parts[self.of])[0]:
+            return
+        if isinstance(parts[self.of], InternalGearSpec):
+            yield Contradiction(("of",), "a helical gear or an external one", f"{self.of!r}, a ring of straight teeth")
         for mesh in meshes_of(self.of, moves):
             move = moves[mesh]
             mates = move.gears if isinstance(move, GearMeshSpec) else ()
             ring = next((name for name in mates if isinstance(parts.get(name), InternalGearSpec)), None)
             if ring is not None:
                 words = f"{self.of!r}, which meshes with the internal gear {ring!r} in {mesh!r}"
-                yield Contradiction(("of",), "a gear that meshes with external gears only", words)
+                yield Contradiction(("of",), "a helical gear, or a gear that meshes with external gears only", words)
 
     @property
     def unit(self) -> Unit:
@@ -110,7 +114,7 @@ class FlankToleranceSpec(AboutOne, ToleranceEntry):
         return (SIDES[side],) if side else tuple(SIDES.values())
 
     @abstractmethod
-    def draw(self, gear: SpurGear, files: Files) -> Draw:
+    def draw(self, gear: CylindricalGear, files: Files) -> Draw:
         """Draw of its components; `files` holds the input of its law.
 
         Raises:
@@ -118,7 +122,7 @@ class FlankToleranceSpec(AboutOne, ToleranceEntry):
         """
 
     @abstractmethod
-    def effect(self, gear: SpurGear, active_roll: float) -> Effect:
+    def effect(self, gear: CylindricalGear, active_roll: float) -> Effect:
         """Effect of its components on a gear whose active profile begins at a roll [rad].
 
         Raises:
@@ -126,7 +130,7 @@ class FlankToleranceSpec(AboutOne, ToleranceEntry):
         """
 
 
-def limits_of_class(iso_class: int, gear: SpurGear) -> FlankTolerances:
+def limits_of_class(iso_class: int, gear: CylindricalGear) -> FlankTolerances:
     """The limits that a class states for a gear.
 
     Raises:

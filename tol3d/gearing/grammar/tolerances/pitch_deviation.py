@@ -30,7 +30,7 @@ from tol3d.gearing.grammar.tolerances.flank_tolerance import (
     limits_of_class,
     no_word,
 )
-from tol3d.gears import SpurGear
+from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.scene.bases import Length
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
@@ -58,7 +58,7 @@ class PitchLimitsSpec(Strict):
             raise refused("", "either iso_class, or single and cumulative", " and ".join(given) or "none of them")
         return self
 
-    def of(self, gear: SpurGear) -> PitchLimits:
+    def of(self, gear: CylindricalGear) -> PitchLimits:
         """The limits of a gear [mm].
 
         Raises:
@@ -208,7 +208,7 @@ class PitchDeviationSpec(FlankToleranceSpec):
         return self.model_copy(update={"limits": limits.model_copy(update=wider)})
 
     @override
-    def draw(self, gear: SpurGear, files: Files) -> Draw:
+    def draw(self, gear: CylindricalGear, files: Files) -> Draw:
         if isinstance(self.law, GivenSpec):
             return self._given(self.law, gear)
         if isinstance(self.law, PitchRecordSpec):
@@ -230,7 +230,7 @@ class PitchDeviationSpec(FlankToleranceSpec):
             raise TypeError("a law that fills limits has some")
         return self.limits
 
-    def _given(self, law: GivenSpec, gear: SpurGear) -> GivenDraw:
+    def _given(self, law: GivenSpec, gear: CylindricalGear) -> GivenDraw:
         found: list[float] = []
         for side in self.sides:
             arcs = [arc.internal for arc in getattr(law, side or "right")]
@@ -240,7 +240,7 @@ class PitchDeviationSpec(FlankToleranceSpec):
             found += [arc - mean for arc in arcs]
         return GivenDraw(tooth_names(gear.teeth, self.sides), tuple(found))
 
-    def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
+    def effect(self, gear: CylindricalGear, active_roll: float) -> FlankDeviation:
         """A flank that lies F ahead lies F cos(alpha_n) cos(beta) out of its tooth on the left, inside on the right.
 
         Exact: involutes that are turned by F/r lie r_b cos(beta_b) F/r apart along their normals.
