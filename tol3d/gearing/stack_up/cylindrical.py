@@ -121,7 +121,7 @@ class HelicalStack(SpurStack):
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
         """With the strain of the driven gear less that of the driver, (rows, 2)."""
         strain = self._strain(self.mesh.driven, deviations) - self._strain(self.mesh.driver, deviations)
-        return {side: np.stack([lean, strain], axis=-1) for side, lean in super()._leans(deviations).items()}
+        return {side: np.stack([lean[:, 0], strain], axis=-1) for side, lean in super()._leans(deviations).items()}
 
     def lost(self, in_plane: Array, across: Array, driver_angle: Array | None = None) -> Array:
         """As of spur gears, on the contact lines at the driver's turns [rad] (rows,); averaged where None is given."""

@@ -8,28 +8,24 @@ action.
 """
 
 import math
-from collections.abc import Sequence
-from typing import Any, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
+from functools import partial
+from typing import NamedTuple
 
 from tol3d.gearing.stack_up.tooth_kernels import (
-    AGAIN,
+    ARRAYS,
     BY_DRIVEN,
     BY_DRIVER,
-    FAR,
-    LOOKS,
     Flank,
     GearTeeth,
+    Integers,
     LineOfContact,
-    flank_in,
+    look_at,
+    losses_by,
+    shifted,
+    take,
     taken_by,
 )
-from tol3d.numerics.arrays import Array
-from tol3d.numerics.compiled import QUICK, kernel, part
-
-Integers = NDArray[np.int64]
+from tol3d.numerics.compiled import QUICK, Kernel, part, variant
 
 BEYOND = 0.02  # rad of roll; through slices one and two of it beyond an end of a contact line goes a parabola
 
@@ -78,20 +74,6 @@ class Row(NamedTuple):
     lean: float
     strain: float
     up: float
-
-
-def taken_on_lines(
-    mesh: tuple[Sequence[float], Sequence[float], Sequence[float]],
-    how: Sequence[int],
-    built: tuple[Array, Array, Integers],
-    rows: tuple[Integers, Array, Array, Array, Array],
-) -> Array:
-    """Loss of backlash by the flanks of a side in the transverse section [mm], (rows,); as tooth_kernels.taken."""
-    first, angles, lean, apart, shifts = (np.require(row, requirements=["C", "W"]) for row in rows)
-    losses = np.empty(len(angles))
-    driver, driven, line = GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), ContactLine(*mesh[2])
-    take_on_lines(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, losses)
-    return losses
 
 
 @part
@@ -171,66 +153,43 @@ def most_on_line(
     return max(most, most_beyond(driver, driven, line, flank, mating, row, high, way))
 
 
-@kernel(
-    GearTeeth,
-    GearTeeth,
-    ContactLine,
-    arrays="int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], "
-    "float64[:, ::1], float64[::1], float64[:, ::1], float64[::1]",
-    level=QUICK,
-)
-def take_on_lines(
-    driver: Any,
-    driven: Any,
-    line: Any,
+@variant(shifted, ContactLine)
+def shifted_lines(line: ContactLine, roll: float, tangent: float) -> ContactLine:
+    """Twist and lean stay."""
+    start, tangent = line.start + roll, line.tangent + tangent
+    return ContactLine(
+        tangent, start, line.pitch, line.half, line.twist, line.fall, line.pitch_roll, line.square, line.up
+    )
+
+
+@variant(look_at, ContactLine)
+def look_along(
+    line: ContactLine,
+    driver: GearTeeth,
+    driven: GearTeeth,
     which: Integers,
-    numbers: Array,
-    mating_numbers: Array,
-    trial: Integers,
-    first: Integers,
-    angles: Array,
-    lean: Array,
-    apart: Array,
-    shifts: Array,
-    losses: Array,
-) -> None:
-    """Compute the loss of backlash by the flanks of a side; arguments as of tooth_kernels.take, `lean` as in taken."""
-    side, count, right = which[0], which[2], 0 if which[0] == 1 else 1
-    took, moved, again = np.empty(count), np.empty(count), np.empty(count, dtype=np.bool_)
-    for row in range(len(losses)):
-        number, open_by, most = trial[row], apart[row] if len(apart) else 0.0, 0.0
-        place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
-        again[:] = True
-        took[:] = 0.0
-        start, tangent = line.start, line.tangent
-        if len(shifts):
-            start, tangent = start + shifts[row, 0], tangent + shifts[row, 1]
-        shifted = ContactLine(
-            tangent, start, line.pitch, line.half, line.twist, line.fall, line.pitch_roll, line.square, line.up
-        )
-        for _ in range(LOOKS):  # a gear turned by its pair's loss is at another roll
-            for k in range(count):
-                if again[k]:
-                    flank = flank_in(numbers, number, place - side * k, which[5], right)
-                    mating = flank_in(mating_numbers, number, mate_place + side * k, which[6], right)
-                    azimuth = angles[row] + (first[row] - side * k) * line.pitch
-                    roll, before, up = start - side * azimuth, took[k], 0.0
-                    mate_roll = (tangent - driver.base * roll) / driven.base
-                    if which[1] == BY_DRIVEN:
-                        mate_roll -= before / driven.base
-                    elif which[1] == BY_DRIVER:
-                        mate_roll -= open_by / driven.base
-                        roll += (open_by - before) / driver.base
-                    else:  # the foot is not in the slice of its point
-                        mate_roll -= line.square * open_by / driven.base
-                        up = side * line.up * open_by
-                    own = Row(float(side), roll, mate_roll, lean[number, 0], lean[number, 1], up)
-                    took[k] = most_on_line(driver, driven, shifted, flank, mating, own)
-                    moved[k] = min(AGAIN * abs(took[k] - before), FAR)
-            most, looks = took.max(), False
-            for k in range(count):
-                again[k] = again[k] and took[k] > most - moved[k]
-                looks = looks or again[k]
-            if not looks:
-                break
-        losses[row] = most
+    pair: tuple[Flank, Flank],
+    azimuth: float,
+    apart: float,
+    lean: tuple[float, float],
+    took: float,
+) -> tuple[float, bool]:
+    """All pairs are iterated: the contact line moves with the roll."""
+    side = which[0]
+    roll, up = line.start - side * azimuth, 0.0
+    mate_roll = (line.tangent - driver.base * roll) / driven.base
+    if which[1] == BY_DRIVEN:
+        mate_roll -= took / driven.base
+    elif which[1] == BY_DRIVER:
+        mate_roll -= apart / driven.base
+        roll += (apart - took) / driver.base
+    else:  # the foot is not in the slice of its point
+        mate_roll -= line.square * apart / driven.base
+        up = side * line.up * apart
+    row = Row(float(side), roll, mate_roll, lean[0], lean[1], up)
+    return most_on_line(driver, driven, line, pair[0], pair[1], row), True
+
+
+take_on_lines = Kernel(take, (GearTeeth, GearTeeth, ContactLine), ARRAYS, level=QUICK)
+taken = partial(losses_by, take_on_lines, ContactLine)
+"""Loss of backlash by the flanks of a side in the transverse section [mm], (rows,)."""

@@ -151,10 +151,12 @@ class Stack(NominalMesh[Pair]):
         return Moved(apart, aside, wider)
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
-        """Loss by tilts at the upper end of the face, by side of the driver's touching flanks [mm], (rows,)."""
+        """Loss by tilts at the upper end of the face [mm], and 0, (rows, 2); by side of the driver that touches."""
         in_plane, across = self._lost_by_tilts(deviations)
         half = 2.0 if self.both_sides_alike else 1.0  # tilts count both flank sides, or the one that reads the face
-        return {side: -(in_plane + side * across) / half for side in (1, -1)}
+        return {
+            side: np.stack([-(in_plane + side * across) / half, np.zeros(len(deviations))], axis=-1) for side in (1, -1)
+        }
 
     def aside(self, deviations: Array, driver_angle: Array) -> Array:
         """Shift [mm], (rows,), of the middle of the driven gear's play, along the flanks' normals.

@@ -4,7 +4,8 @@ Formulas are those of the stack-up, independent of poses and kernels of the exac
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.compiled import QUICK, kernel, part
+from tol3d.numerics.compiled import QUICK, Kernel, part, variant
 from tol3d.numerics.quick_angles import cos_and_sin
 
 Integers = NDArray[np.int64]
@@ -68,25 +69,34 @@ class Flank(NamedTuple):
     helix: float
 
 
-def taken(
-    mesh: tuple[Sequence[float], Sequence[float], Sequence[float]],
-    how: Sequence[int],
-    built: tuple[Array, Array, Integers],
-    rows: tuple[Integers, Array, Array, Array, Array],
-) -> Array:
-    """Loss of backlash by the flanks of a side [mm], (rows,).
+def shifted(line: Any, roll: float, tangent: float) -> Any:
+    """The line with a start that much later [rad], and a tangent that much longer [mm]; one variant a kind."""
+    raise NotImplementedError
+
+
+def look_at(
+    line: Any,
+    driver: GearTeeth,
+    driven: GearTeeth,
+    which: Integers,
+    pair: tuple[Flank, Flank],
+    azimuth: float,
+    apart: float,
+    lean: tuple[float, float],
+    took: float,
+) -> tuple[float, bool]:
+    """Loss by a pair [mm] after the turning gear has turned by the loss `took`; and True if another turn changes it.
+
+    One variant a kind of line.
 
     Args:
-        mesh: numbers of driver, driven and line; see GearTeeth and LineOfContact.
-        how: `which` of `take`.
-        built: deviations of both gears' flanks, and the trial of each row, as in `take`.
-        rows: first, angles, lean, apart and shifts, as in `take`.
+        line, driver, driven, which: as in `take`.
+        pair: flanks of driver and driven.
+        azimuth: of the driver's tooth [rad].
+        apart, lean: as in `take`, of the row.
+        took: loss by the previous iteration [mm]; 0 before the first.
     """
-    first, angles, lean, apart, shifts = (np.require(row, requirements=["C", "W"]) for row in rows)
-    losses = np.empty(len(angles))
-    driver, driven, line = GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), LineOfContact(*mesh[2])
-    take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, losses)
-    return losses
+    raise NotImplementedError
 
 
 @part
@@ -210,27 +220,25 @@ def changes(driver: GearTeeth, driven: GearTeeth, flank: Flank, mating: Flank, r
     return rolls[0] > driver.tip or rolls[1] > driven.tip
 
 
-@part
-def look_at(
+@variant(shifted, LineOfContact)
+def shifted_line(line: LineOfContact, roll: float, tangent: float) -> LineOfContact:
+    """Half the face stays."""
+    return LineOfContact(line.tangent + tangent, line.start + roll, line.pitch, line.half)
+
+
+@variant(look_at, LineOfContact)
+def look_at_pair(
+    line: LineOfContact,
     driver: GearTeeth,
     driven: GearTeeth,
-    line: LineOfContact,
     which: Integers,
     pair: tuple[Flank, Flank],
     azimuth: float,
     apart: float,
-    lean: float,
+    lean: tuple[float, float],
     took: float,
 ) -> tuple[float, bool]:
-    """Loss by a pair [mm] after the turning gear has turned by the loss `took`; and True if another turn changes it.
-
-    Args:
-        driver, driven, line, which: as in `take`.
-        pair: flanks of driver and driven.
-        azimuth: of the driver's tooth [rad].
-        apart, lean: as in `take`, of the row.
-        took: loss by the previous iteration [mm]; 0 before the first.
-    """
+    """Pairs whose loss does not depend on their rolls are not iterated."""
     roll = line.start - which[0] * azimuth
     mate_roll = (line.tangent - driver.base * roll) / driven.base
     if which[1] == BY_DRIVEN:
@@ -240,18 +248,10 @@ def look_at(
         if which[1] == BY_DRIVER:
             roll += (apart - took) / driver.base
     rolls = (roll, mate_roll)
-    loss = taken_by(driver, driven, line, pair[0], pair[1], rolls, lean)
+    loss = taken_by(driver, driven, line, pair[0], pair[1], rolls, lean[0])
     return loss, changes(driver, driven, pair[0], pair[1], rolls)
 
 
-@kernel(
-    GearTeeth,
-    GearTeeth,
-    LineOfContact,
-    arrays="int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[::1], "
-    "float64[::1], float64[:, ::1], float64[::1]",
-    level=QUICK,
-)
 def take(
     driver: Any,
     driven: Any,
@@ -279,7 +279,8 @@ def take(
         trial: (rows,), trial of each row.
         first: (rows,), the driver's first tooth that may touch, as the mesh counts; the others follow against `side`.
         angles: (rows,), of the driver [rad].
-        lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm].
+        lean: (trials, 2), loss by tilted axes at the upper end of the common face, signed [mm]; and, of a ContactLine,
+            the strain of the driven gear less that of the driver.
         apart: (rows,), gap of the side before [mm]; no rows if it touches already.
         shifts: (rows, 2), additional roll of a driver's tooth at the line of centres [rad], and additional length of
             the common tangent [mm]; no rows if axes are at their nominal places.
@@ -289,12 +290,13 @@ def take(
     took, moved, again = np.empty(count), np.empty(count), np.empty(count, dtype=np.bool_)
     for row in range(len(losses)):
         number, open_by, most = trial[row], apart[row] if len(apart) else 0.0, 0.0
+        leans = (lean[number, 0], lean[number, 1])
         place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
         again[:] = True
         took[:] = 0.0
-        shifted = line
+        moved_line = line
         if len(shifts):
-            shifted = LineOfContact(line.tangent + shifts[row, 1], line.start + shifts[row, 0], line.pitch, line.half)
+            moved_line = shifted(line, shifts[row, 0], shifts[row, 1])
         for _ in range(LOOKS):  # a gear turned by its pair's loss is at another roll
             for k in range(count):
                 if again[k]:
@@ -303,7 +305,7 @@ def take(
                     azimuth = angles[row] + (first[row] - side * k) * line.pitch
                     pair, before = (flank, mating), took[k]
                     took[k], again[k] = look_at(
-                        driver, driven, shifted, which, pair, azimuth, open_by, lean[number], before
+                        moved_line, driver, driven, which, pair, azimuth, open_by, leans, before
                     )
                     moved[k] = min(AGAIN * abs(took[k] - before), FAR)
             most, looks = took.max(), False
@@ -313,3 +315,36 @@ def take(
             if not looks:
                 break
         losses[row] = most
+
+
+ARRAYS = (
+    "int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[:, ::1], "
+    "float64[::1], float64[:, ::1], float64[::1]"
+)
+
+
+def losses_by(
+    kernel: Kernel,
+    kind: Callable[..., Any],
+    mesh: tuple[Sequence[float], Sequence[float], Sequence[float]],
+    how: Sequence[int],
+    built: tuple[Array, Array, Integers],
+    rows: tuple[Integers, Array, Array, Array, Array],
+) -> Array:
+    """Loss of backlash by the flanks of a side [mm], (rows,).
+
+    Args:
+        kernel, kind: `take` for a kind of line, and that kind.
+        mesh: numbers of driver, driven and line; see GearTeeth and the kind.
+        how: `which` of `take`.
+        built: deviations of both gears' flanks, and the trial of each row, as in `take`.
+        rows: first, angles, lean, apart and shifts, as in `take`.
+    """
+    losses = np.empty(len(rows[0]))
+    each = (np.require(row, requirements=["C", "W"]) for row in rows)
+    kernel(GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), kind(*mesh[2]), np.array(how), *built, *each, losses)
+    return losses
+
+
+take_on_line = Kernel(take, (GearTeeth, GearTeeth, LineOfContact), ARRAYS, level=QUICK)
+taken = partial(losses_by, take_on_line, LineOfContact)

@@ -161,8 +161,8 @@ class ToothPairs:
             side: 1 where the driver's right flanks touch, -1 where its left ones do.
             built: their trials.
             driver_angle: (rows,) [rad].
-            lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm]; of helical gears
-                (trials, 2), with the strain of the driven gear less that of the driver.
+            lean: (trials, 2), loss by tilted axes at the upper end of the common face, signed [mm]; and of helical
+                gears the strain of the driven gear less that of the driver.
             moved: axes and flanks off their nominal places; None if none is.
             turns: the gear that turns until the side touches; None reads its gap as the gears stand.
             apart: by which the side stands open before [mm], (rows,), where anything but the driven gear turns.
@@ -173,20 +173,20 @@ class ToothPairs:
         teeth, count = self._teeth(side, driver_angle)
         places = (self.driver.ahead, self.driven.ahead, first.teeth, second.teeth)
         line: tuple[float, ...] = (self._tangent, start, first.angular_pitch, half)
-        kernel, cosine = importlib.import_module(KERNELS).taken, self.pair.base_helix_cosine
+        kernels, cosine = KERNELS, self.pair.base_helix_cosine
         if first.helix_angle:
             fall = first.hand * math.tan(first.base_helix_angle) / half
             up = first.hand * math.sin(first.base_helix_angle) * cosine
             line = (*line, first.twist, fall, math.tan(self.pair.working_pressure_angle), cosine**2, up)
-            kernel = importlib.import_module(LINE_KERNELS).taken_on_lines
-        found: Array = kernel(
+            kernels = LINE_KERNELS
+        found: Array = importlib.import_module(kernels).taken(
             (self.driver.measures, self.driven.measures, line),
             (side, WHO_TURNS[turns], count, *places),
             (built.driver, built.driven, built.trial) if cosine == 1.0 else built.in_section(cosine),
             (
                 teeth,
                 driver_angle,
-                lean / np.array([cosine, 1.0]) if first.helix_angle else lean,
+                lean / np.array([cosine, 1.0]),
                 np.zeros(0) if apart is None else apart / cosine,
                 self._shifts(side, moved),
             ),
