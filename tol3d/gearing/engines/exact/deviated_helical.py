@@ -22,19 +22,23 @@ from tol3d.gearing.engines.exact.deviated import (
     Offset,
     is_level,
     offset_at,
+    offsets_in,
 )
 from tol3d.gearing.engines.exact.foot import (
     begun,
     external,
     first_face,
     flank_of,
+    flanks_in,
     foot,
     grown,
     leaning,
     line_of_action,
     middle_face,
+    never_quickly,
     no_promise,
     promise,
+    quick_turn,
     section,
     turn_to,
 )
@@ -78,6 +82,8 @@ class DeviatedHelicalTooth(NamedTuple):
 external(DeviatedHelicalTooth)
 variant(first_face, DeviatedHelicalTooth)(middle_face)
 variant(promise, DeviatedHelicalTooth)(no_promise)
+variant(flanks_in, DeviatedHelicalTooth)(offsets_in)
+variant(quick_turn, DeviatedHelicalTooth)(never_quickly)
 
 
 @part
