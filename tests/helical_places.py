@@ -2,9 +2,10 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import pytest
 from oracles.screw_flanks import Placed, ScrewGear, lag
 from scipy.spatial.transform import Rotation
 
@@ -14,7 +15,7 @@ from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.model.model import GearPart
 from tol3d.gearing.shown.placed import PlacedGear
-from tol3d.gears import Flank, InternalGear, InternalPair, SpurGear, SpurPair
+from tol3d.gears import LEFT, LEFT_HAND, RIGHT, RIGHT_HAND, Flank, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.numerics.arrays import Array
 
 BOTH = frozenset(("driver", "driven"))
@@ -139,3 +140,34 @@ def least_placed_lag(driver: PlacedGear, driven: PlacedGear, side: int) -> float
         ),
         default=math.inf,
     )
+
+
+def assert_read_as_spur(
+    leaning: SpurPair | InternalPair, spur: SpurPair | InternalPair, rng: np.random.Generator
+) -> None:
+    """A pair whose helix vanishes reads what the spur pair does: displaced and eccentric, on both sides."""
+    for flank in (RIGHT, LEFT):
+        places, angle = random_places(rng), float(rng.uniform(-3.0, 3.0))
+        across = [(x, y, 0.0) for x, y, _ in places.shifts]  # along the axis even such a helix turns its mate by 5e-12
+        places = replace(places, shifts=across, tilts=((0.0, 0.0), (0.0, 0.0)))
+        ours, theirs = read(leaning, angle, flank, places), read(spur, angle, flank, places)
+        assert ours.gap[0] == pytest.approx(theirs.gap[0], abs=1e-12)
+        for name in ("driven_angle", "driven_turn", "driver_turn"):
+            assert getattr(ours, name)[0] == pytest.approx(getattr(theirs, name)[0], abs=1e-12), name
+
+
+def assert_mirrored_reads_the_same(pair: SpurPair | InternalPair, rng: np.random.Generator) -> None:
+    """Both hands and the flanks exchanged, and every place mirrored in the plane of the axes."""
+    places, angle = random_places(rng), float(rng.uniform(-3.0, 3.0))
+    hands = {RIGHT_HAND: LEFT_HAND, LEFT_HAND: RIGHT_HAND}
+    other = replace(
+        pair,
+        pinion=replace(pair.pinion, hand=hands[pair.pinion.hand]),
+        wheel=replace(pair.wheel, hand=hands[pair.wheel.hand]),
+    )
+    ours = read(pair, angle, RIGHT, places)
+    theirs = read(other, -angle, LEFT, mirrored(places, pair.wheel.angular_pitch))
+    assert ours.gap[0] == pytest.approx(theirs.gap[0], abs=2e-8)  # two ways to the same least gap: QUICK_FALL
+    assert ours.driven_turn[0] == pytest.approx(theirs.driven_turn[0], abs=1e-9)
+    total = (ours.driven_angle[0] + theirs.driven_angle[0]) * pair.wheel.teeth / (2 * math.pi)
+    assert total == pytest.approx(round(total), abs=1e-7)

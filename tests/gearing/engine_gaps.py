@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.engines.exact.kernels import kernels_of
+from tol3d.gearing.engines.exact.kernels import NO_FLANKS, kernels_of
 from tol3d.gears import Flank, GearPair
 from tol3d.numerics.arrays import Array
 
@@ -84,6 +84,7 @@ def flank_gap(
         shafts,
         np.stack([gear.centre for gear in own], axis=1),
         *(np.stack([getattr(g, name) for g in own], axis=1) for name in ("flank_turn", "flank_offset", "scale")),
+        *NO_FLANKS,
         *turns,
         teeth,
         wanted,

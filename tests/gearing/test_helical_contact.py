@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helical_places import Places, least_lag, mirrored, random_places, read
+from helical_places import Places, assert_mirrored_reads_the_same, assert_read_as_spur, least_lag, random_places, read
 from oracles.screw_flanks import ScrewGear
 
 from tol3d.errors import GeometryError
@@ -133,34 +133,14 @@ def test_a_helix_that_vanishes_reads_what_the_spur_kernel_reads() -> None:
     leaning = SpurPair(
         replace(spur.pinion, helix_angle=1e-9), replace(spur.wheel, helix_angle=1e-9, hand=LEFT_HAND), 70.03
     )
-    rng = np.random.default_rng(3)
-    for flank in (RIGHT, LEFT):
-        places, angle = random_places(rng), float(rng.uniform(-3.0, 3.0))
-        across = [(x, y, 0.0) for x, y, _ in places.shifts]  # along the axis even such a helix turns its mate by 5e-12
-        places = replace(places, shifts=across, tilts=((0.0, 0.0), (0.0, 0.0)))
-        ours, theirs = read(leaning, angle, flank, places), read(spur, angle, flank, places)
-        assert ours.gap[0] == pytest.approx(theirs.gap[0], abs=1e-12)
-        for name in ("driven_angle", "driven_turn", "driver_turn"):
-            assert getattr(ours, name)[0] == pytest.approx(getattr(theirs, name)[0], abs=1e-12), name
+    assert_read_as_spur(leaning, spur, np.random.default_rng(3))
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_mirrored_pair_reads_the_same(seed: int) -> None:
     """Both hands and the flanks exchanged, and every place mirrored in the plane of the axes."""
     rng = np.random.default_rng(50 + seed)
-    pair, _ = random_pair(rng)
-    places, angle = random_places(rng), float(rng.uniform(-3.0, 3.0))
-    hands = {RIGHT_HAND: LEFT_HAND, LEFT_HAND: RIGHT_HAND}
-    pinion, wheel = (replace(gear, hand=hands[gear.hand]) for gear in (pair.pinion, pair.wheel))
-    other = SpurPair(pinion, wheel, pair.centre_distance)
-    ours, theirs = (
-        read(pair, angle, RIGHT, places),
-        read(other, -angle, LEFT, mirrored(places, pair.wheel.angular_pitch)),
-    )
-    assert ours.gap[0] == pytest.approx(theirs.gap[0], abs=2e-8)  # two ways to the same least gap: QUICK_FALL
-    assert ours.driven_turn[0] == pytest.approx(theirs.driven_turn[0], abs=1e-9)
-    total = (ours.driven_angle[0] + theirs.driven_angle[0]) * pair.wheel.teeth / (2 * math.pi)
-    assert total == pytest.approx(round(total), abs=1e-7)
+    assert_mirrored_reads_the_same(random_pair(rng)[0], rng)
 
 
 def test_the_mean_loss_of_a_tilt_is_its_closed_form() -> None:

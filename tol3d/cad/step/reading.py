@@ -66,9 +66,9 @@ class ReadPart:
 
     Args:
         body: the product.
-        features: with names and colours of their faces.
+        features: found on its faces, with names and colours.
         names: of its faces in the file, by their numbers.
-        named: items that its drawing names on its faces.
+        named: items that its drawing names on its faces: datums, tolerances, dimensions.
         colours: "#RRGGBB" of its faces that have one, by their numbers.
         unread: its faces that cannot be read, by their numbers, and why.
     """
@@ -140,26 +140,10 @@ READ: Final = TypeAdapter(ReadFile)
 
 
 @dataclass(frozen=True)
-class StepPart:
-    """A product of a file with its geometry, in its own frame.
-
-    Args:
-        file: the file as it was read.
-        body: the product.
-        features: found on its faces, with names and colours.
-        names: of its faces in the file, by their numbers.
-        named: items that its drawing names on its faces: datums, tolerances, dimensions.
-        colours: "#RRGGBB" of its faces that have one, by their numbers.
-        unread: its faces that cannot be read, by their numbers, and why.
-    """
+class StepPart(ReadPart):
+    """A product of a file with its geometry, in its own frame; `file` is the file as it was read."""
 
     file: "StepFile"
-    body: Body
-    features: tuple[FoundFeature, ...]
-    names: Mapping[int, str]
-    named: tuple[Named, ...]
-    colours: Mapping[int, str]
-    unread: Mapping[int, str]
 
     @property
     def name(self) -> str:
@@ -237,10 +221,7 @@ class StepFile:
     @cached_property
     def parts(self) -> tuple[StepPart, ...]:
         """Its products with geometry of their own, in the order of the file."""
-        return tuple(
-            StepPart(self, part.body, part.features, part.names, part.named, part.colours, part.unread)
-            for part in self.read.parts
-        )
+        return tuple(StepPart(**vars(part), file=self) for part in self.read.parts)
 
     def part(self, product: str | None, use: str | None = None) -> StepPart:
         """The product of that name, or that a use has; the only one by default.

@@ -121,7 +121,7 @@ class HelicalStack(SpurStack):
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
         """As ToothPairs.taken has them, (rows, 5)."""
         strain = self._strain(self.mesh.driven, deviations) - self._strain(self.mesh.driver, deviations)
-        leans = super()._leans(deviations)
+        leans = {side: lean[:, 0] for side, lean in super()._leans(deviations).items()}
         alpha, half = self.pair.working_pressure_angle, self.pair.common_face / 2
         apart = -(leans[1] + leans[-1]) / (2 * self.sin * half)
         aside = (leans[1] - leans[-1]) / (2 * self.cos * half)

@@ -11,27 +11,24 @@ import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.gearing.stack_up.tooth_kernels import (
-    AGAIN,
+    ARRAYS,
     BY_DRIVEN,
     BY_DRIVER,
-    FAR,
-    LOOKS,
     Flank,
     GearTeeth,
+    Integers,
     LineOfContact,
     TeethInRing,
-    flank_in,
+    look_at,
+    losses_by,
     sense_of,
+    shifted,
+    take,
     taken_by,
 )
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.compiled import QUICK, Kernel, part
-
-Integers = NDArray[np.int64]
+from tol3d.numerics.compiled import QUICK, Kernel, part, variant
 
 BEYOND = 0.0025  # rad of roll; through slices one and two of it beyond an end of a contact line goes a parabola
 FURTHEST = 16.0  # times as far its top is looked for
@@ -51,6 +48,7 @@ class ContactLine(NamedTuple):
         pitch_roll: roll of the driver at the pitch point [rad].
         square: cos(beta_b)^2.
         up: h_1 sin(beta_b) cos(beta_b), by which a foot on the mate lies higher per gap of the driver's right flanks.
+        higher: how much higher than a point its foot lies on the mate [mm], as one gear stands lower.
     """
 
     tangent: float
@@ -62,6 +60,7 @@ class ContactLine(NamedTuple):
     pitch_roll: float
     square: float
     up: float
+    higher: float = 0.0
 
 
 class Row(NamedTuple):
@@ -87,21 +86,6 @@ class Row(NamedTuple):
     aside: float
     strain: float
     up: float
-
-
-def taken_on_lines(
-    mesh: tuple[Sequence[float], Sequence[float], Sequence[float]],
-    how: Sequence[int],
-    built: tuple[Array, Array, Integers],
-    rows: tuple[Integers, Array, Array, Array, Array],
-) -> Array:
-    """Loss of backlash by the flanks of a side in the transverse section [mm], (rows,); as tooth_kernels.taken."""
-    first, angles, lean, apart, shifts = (np.require(row, requirements=["C", "W"]) for row in rows)
-    losses = np.empty(len(angles))
-    kind, take = (TeethInRing, take_in_rings) if len(mesh[0]) > len(GearTeeth._fields) else (GearTeeth, take_on_lines)
-    driver, driven, line = kind(*mesh[0]), kind(*mesh[1]), ContactLine(*mesh[2])
-    take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, losses)
-    return losses
 
 
 @part
@@ -194,75 +178,60 @@ def most_on_line(
     return max(most, most_beyond(driver, driven, line, flank, mating, row, high, way))
 
 
-def take_rows(
-    driver: Any,
-    driven: Any,
-    line: Any,
+@variant(shifted, ContactLine)
+def shifted_lines(line: ContactLine, shifts: Array, row: int) -> ContactLine:
+    """Twist and lean stay."""
+    start, tangent, higher = line.start + shifts[row, 0], line.tangent + shifts[row, 1], line.higher - shifts[row, 2]
+    return ContactLine(
+        tangent, start, line.pitch, line.half, line.twist, line.fall, line.pitch_roll, line.square, line.up, higher
+    )
+
+
+@variant(look_at, ContactLine)
+def look_along(
+    line: ContactLine,
+    driver: GearTeeth,
+    driven: GearTeeth,
     which: Integers,
-    numbers: Array,
-    mating_numbers: Array,
-    trial: Integers,
-    first: Integers,
-    angles: Array,
+    pair: tuple[Flank, Flank],
+    azimuth: float,
+    apart: float,
     lean: Array,
-    apart: Array,
-    shifts: Array,
-    losses: Array,
-) -> None:
-    """Compute the loss of backlash by the flanks of a side; arguments as of tooth_kernels.take, `lean` as in taken."""
-    side, count, right = which[0], which[2], 0 if which[0] == 1 else 1
-    took, moved, again = np.empty(count), np.empty(count), np.empty(count, dtype=np.bool_)
-    for row in range(len(losses)):
-        number, open_by, most = trial[row], apart[row] if len(apart) else 0.0, 0.0
-        place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
-        mate_right, step = right, side
-        if outside_of(driver, driven) < 0.0:
-            mate_right, step = 1 - right, -side
-            mate_place = (first[row] - mate_right - which[4]) % which[6]
-        again[:] = True
-        took[:] = 0.0
-        start, tangent, lower = line.start, line.tangent, 0.0
-        if len(shifts):
-            start, tangent, lower = start + shifts[row, 0], tangent + shifts[row, 1], -shifts[row, 2]
-        shifted = ContactLine(
-            tangent, start, line.pitch, line.half, line.twist, line.fall, line.pitch_roll, line.square, line.up
-        )
-        for _ in range(LOOKS):  # a gear turned by its pair's loss is at another roll
-            for k in range(count):
-                if again[k]:
-                    flank = flank_in(numbers, number, place - side * k, which[5], right)
-                    mating = flank_in(mating_numbers, number, mate_place + step * k, which[6], mate_right)
-                    azimuth = angles[row] + (first[row] - side * k) * line.pitch
-                    roll, before, up = start - side * azimuth, took[k], lower
-                    mate_roll = (tangent - driver.base * roll) / driven.base
-                    if which[1] == BY_DRIVEN:
-                        mate_roll -= before / driven.base
-                    elif which[1] == BY_DRIVER:
-                        mate_roll -= open_by / driven.base
-                        roll += (open_by - before) / driver.base
-                    else:  # the foot is not in the slice of its point
-                        mate_roll -= (before + line.square * (open_by - before)) / driven.base
-                        up = lower + side * line.up * (open_by - before)
-                    # of the mate's turn there remains in a slice what its lean does not take
-                    leant, by_roll, by_tangent = lean[number, 0], lean[number, 2], lean[number, 3]
-                    mate_roll -= leant * side * line.fall * driver.base * (roll - line.pitch_roll) / driven.base
-                    by_mate = leant / (line.half * line.square) + by_tangent - driver.base * by_roll
-                    by_height = (by_roll, by_mate / driven.base, by_tangent)
-                    own = Row(float(side), roll, mate_roll, leant, by_height, lean[number, 4], lean[number, 1], up)
-                    took[k] = most_on_line(driver, driven, shifted, flank, mating, own)
-                    moved[k] = min(AGAIN * abs(took[k] - before), FAR)
-            most, looks = took.max(), False
-            for k in range(count):
-                again[k] = again[k] and took[k] > most - moved[k]
-                looks = looks or again[k]
-            if not looks:
-                break
-        losses[row] = most
+    trial: int,
+    took: float,
+) -> tuple[float, bool]:
+    """All pairs are iterated: the contact line moves with the roll."""
+    side, up = which[0], line.higher
+    roll = line.start - side * azimuth
+    mate_roll = (line.tangent - driver.base * roll) / driven.base
+    if which[1] == BY_DRIVEN:
+        mate_roll -= took / driven.base
+    elif which[1] == BY_DRIVER:
+        mate_roll -= apart / driven.base
+        roll += (apart - took) / driver.base
+    else:  # the foot is not in the slice of its point
+        mate_roll -= (took + line.square * (apart - took)) / driven.base
+        up = line.higher + side * line.up * (apart - took)
+    # of the mate's turn there remains in a slice what its lean does not take
+    leant, by_roll, by_tangent = lean[trial, 0], lean[trial, 2], lean[trial, 3]
+    mate_roll -= leant * side * line.fall * driver.base * (roll - line.pitch_roll) / driven.base
+    by_mate = leant / (line.half * line.square) + by_tangent - driver.base * by_roll
+    by_height = (by_roll, by_mate / driven.base, by_tangent)
+    row = Row(float(side), roll, mate_roll, leant, by_height, lean[trial, 4], lean[trial, 1], up)
+    return most_on_line(driver, driven, line, pair[0], pair[1], row), True
 
 
-ARRAYS = (
-    "int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], "
-    "float64[:, ::1], float64[::1], float64[:, ::1], float64[::1]"
-)
-take_on_lines = Kernel(take_rows, (GearTeeth, GearTeeth, ContactLine), ARRAYS, level=QUICK)
-take_in_rings = Kernel(take_rows, (TeethInRing, TeethInRing, ContactLine), ARRAYS, level=QUICK)
+take_on_lines = Kernel(take, (GearTeeth, GearTeeth, ContactLine), ARRAYS, level=QUICK)
+take_in_rings = Kernel(take, (TeethInRing, TeethInRing, ContactLine), ARRAYS, level=QUICK)
+
+
+def taken(
+    mesh: tuple[Sequence[float], Sequence[float], Sequence[float]],
+    how: Sequence[int],
+    built: tuple[Array, Array, Integers],
+    rows: tuple[Integers, Array, Array, Array, Array],
+) -> Array:
+    """Loss of backlash by the flanks of a side in the transverse section [mm], (rows,); as tooth_kernels.taken."""
+    if len(mesh[0]) > len(GearTeeth._fields):
+        return losses_by(take_in_rings, (TeethInRing, ContactLine), mesh, how, built, rows)
+    return losses_by(take_on_lines, (GearTeeth, ContactLine), mesh, how, built, rows)

@@ -175,17 +175,12 @@ def analytic_transmission_error(
         for columns, wave in _waves(model, backlash, driver):
             for column, own in zip(columns, wave, strict=True):
                 total += np.multiply.outer(deviations[:, column], factor * (own - own[0]))
-        if stack_of(model, model.mesh(backlash.mesh), backlash.reading).turns_by_teeth:
-            turned = _turned_by_teeth(model, backlash, deviations, driver)
+        mesh = model.mesh(backlash.mesh)
+        stack, side = stack_of(model, mesh, backlash.reading), mesh.resting_flank(backlash.reading.flank)
+        if stack.turns_by_teeth:
+            turned = stack.turned_by_teeth(side, deviations, driver) * per_normal_backlash(model, backlash)
             total += factor * (turned - turned[:, :1])
     return total
-
-
-def _turned_by_teeth(model: Model, backlash: Backlash, deviations: Array, driver: Array) -> Array:
-    """Turn of the driven gear about its z [rad], (trials, positions), by single flanks that deviate."""
-    mesh = model.mesh(backlash.mesh)
-    stack, side = stack_of(model, mesh, backlash.reading), mesh.resting_flank(backlash.reading.flank)
-    return stack.turned_by_teeth(side, deviations, driver) * per_normal_backlash(model, backlash)
 
 
 def _waves(model: Model, backlash: Backlash, driver: Array) -> Iterator[tuple[range, Array]]:

@@ -203,10 +203,10 @@ class Stack(NominalMesh[Pair]):
         return Moved(apart, aside, wider, higher)
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
-        """Loss by tilts at the upper end of the face, by side of the driver's touching flanks [mm], (rows,)."""
+        """Loss by tilts at the upper end of the face, by side of the driver's touching flanks [mm], (rows, 1)."""
         in_plane, across = self._lost_by_tilts(deviations)
         half = 2.0 if self.both_sides_alike else 1.0  # tilts count both flank sides, or the one that reads the face
-        return {side: -(in_plane + side * across) / half for side in (1, -1)}
+        return {side: -(in_plane + side * across)[:, np.newaxis] / half for side in (1, -1)}
 
     def aside(self, deviations: Array, driver_angle: Array) -> Array:
         """Shift [mm], (rows,), of the middle of the driven gear's play, along the flanks' normals.

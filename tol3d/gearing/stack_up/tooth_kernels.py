@@ -4,7 +4,8 @@ Formulas are those of the stack-up, independent of poses and kernels of the exac
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.compiled import QUICK, kernel, part, variant
+from tol3d.numerics.compiled import QUICK, Kernel, part, variant
 from tol3d.numerics.quick_angles import cos_and_sin
 
 Integers = NDArray[np.int64]
@@ -102,25 +103,36 @@ class Flank(NamedTuple):
     helix: float
 
 
-def taken(
-    mesh: tuple[Sequence[float], Sequence[float], Sequence[float]],
-    how: Sequence[int],
-    built: tuple[Array, Array, Integers],
-    rows: tuple[Integers, Array, Array, Array, Array],
-) -> Array:
-    """Loss of backlash by the flanks of a side [mm], (rows,).
+def shifted(line: Any, shifts: Array, row: int) -> Any:
+    """The line by the shifts of a row, as in `take`; one variant a kind."""
+    raise NotImplementedError
+
+
+def look_at(
+    line: Any,
+    driver: GearTeeth,
+    driven: GearTeeth,
+    which: Integers,
+    pair: tuple[Flank, Flank],
+    azimuth: float,
+    apart: float,
+    lean: Array,
+    trial: int,
+    took: float,
+) -> tuple[float, bool]:
+    """Loss by a pair [mm] after the turning gear has turned by the loss `took`; and True if another turn changes it.
+
+    One variant a kind of line.
 
     Args:
-        mesh: numbers of driver, driven and line; see GearTeeth and LineOfContact.
-        how: `which` of `take`.
-        built: deviations of both gears' flanks, and the trial of each row, as in `take`.
-        rows: first, angles, lean, apart and shifts, as in `take`.
+        line, driver, driven, which: as in `take`.
+        pair: flanks of driver and driven.
+        azimuth: of the driver's tooth [rad].
+        apart: as in `take`, of the row.
+        lean, trial: as in `take`, and the trial of the row.
+        took: loss by the previous iteration [mm]; 0 before the first.
     """
-    first, angles, lean, apart, shifts = (np.require(row, requirements=["C", "W"]) for row in rows)
-    losses = np.empty(len(angles))
-    driver, driven, line = GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), LineOfContact(*mesh[2])
-    take(driver, driven, line, np.array(how), *built, first, angles, lean, apart, shifts, losses)
-    return losses
+    raise NotImplementedError
 
 
 @part
@@ -249,27 +261,26 @@ def changes(driver: GearTeeth, driven: GearTeeth, flank: Flank, mating: Flank, r
     return rolls[0] > driver.tip or rolls[1] > driven.tip
 
 
-@part
-def look_at(
+@variant(shifted, LineOfContact)
+def shifted_line(line: LineOfContact, shifts: Array, row: int) -> LineOfContact:
+    """Half the face stays."""
+    return LineOfContact(line.tangent + shifts[row, 1], line.start + shifts[row, 0], line.pitch, line.half)
+
+
+@variant(look_at, LineOfContact)
+def look_at_pair(
+    line: LineOfContact,
     driver: GearTeeth,
     driven: GearTeeth,
-    line: LineOfContact,
     which: Integers,
     pair: tuple[Flank, Flank],
     azimuth: float,
     apart: float,
-    lean: float,
+    lean: Array,
+    trial: int,
     took: float,
 ) -> tuple[float, bool]:
-    """Loss by a pair [mm] after the turning gear has turned by the loss `took`; and True if another turn changes it.
-
-    Args:
-        driver, driven, line, which: as in `take`.
-        pair: flanks of driver and driven.
-        azimuth: of the driver's tooth [rad].
-        apart, lean: as in `take`, of the row.
-        took: loss by the previous iteration [mm]; 0 before the first.
-    """
+    """Pairs whose loss does not depend on their rolls are not iterated."""
     roll = line.start - which[0] * azimuth
     mate_roll = (line.tangent - driver.base * roll) / driven.base
     if which[1] == BY_DRIVEN:
@@ -279,18 +290,10 @@ def look_at(
         if which[1] == BY_DRIVER:
             roll += (apart - took) / driver.base
     rolls = (roll, mate_roll)
-    loss = taken_by(driver, driven, line, pair[0], pair[1], rolls, lean)
+    loss = taken_by(driver, driven, line, pair[0], pair[1], rolls, lean[trial, 0])
     return loss, changes(driver, driven, pair[0], pair[1], rolls)
 
 
-@kernel(
-    GearTeeth,
-    GearTeeth,
-    LineOfContact,
-    arrays="int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[::1], "
-    "float64[::1], float64[:, ::1], float64[::1]",
-    level=QUICK,
-)
 def take(
     driver: Any,
     driven: Any,
@@ -318,31 +321,36 @@ def take(
         trial: (rows,), trial of each row.
         first: (rows,), the driver's first tooth that may touch, as the mesh counts; the others follow against `side`.
         angles: (rows,), of the driver [rad].
-        lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm].
+        lean: (trials, 1), or of a ContactLine (trials, 5), as ToothPairs.taken has them.
         apart: (rows,), gap of the side before [mm]; no rows if it touches already.
         shifts: (rows, 2), additional roll of a driver's tooth at the line of centres [rad], and additional length of
-            the common tangent [mm]; no rows if axes are at their nominal places.
+            the common tangent [mm]; of a ContactLine (rows, 3), with the driven teeth's shift along the axes [mm]; no
+            rows if axes are at their nominal places.
         losses: (rows,) [mm], written; positive where the side touches earlier.
     """
     side, count, right = which[0], which[2], 0 if which[0] == 1 else 1
     took, moved, again = np.empty(count), np.empty(count), np.empty(count, dtype=np.bool_)
+    in_ring = sense_of(driver) * sense_of(driven) < 0.0
+    mate_right, step = (1 - right, -side) if in_ring else (right, side)
     for row in range(len(losses)):
         number, open_by, most = trial[row], apart[row] if len(apart) else 0.0, 0.0
         place, mate_place = (first[row] - which[3]) % which[5], (-first[row] - right - which[4]) % which[6]
+        if in_ring:
+            mate_place = (first[row] - mate_right - which[4]) % which[6]
         again[:] = True
         took[:] = 0.0
-        shifted = line
+        moved_line = line
         if len(shifts):
-            shifted = LineOfContact(line.tangent + shifts[row, 1], line.start + shifts[row, 0], line.pitch, line.half)
+            moved_line = shifted(line, shifts, row)
         for _ in range(LOOKS):  # a gear turned by its pair's loss is at another roll
             for k in range(count):
                 if again[k]:
                     flank = flank_in(numbers, number, place - side * k, which[5], right)
-                    mating = flank_in(mating_numbers, number, mate_place + side * k, which[6], right)
+                    mating = flank_in(mating_numbers, number, mate_place + step * k, which[6], mate_right)
                     azimuth = angles[row] + (first[row] - side * k) * line.pitch
                     pair, before = (flank, mating), took[k]
                     took[k], again[k] = look_at(
-                        driver, driven, shifted, which, pair, azimuth, open_by, lean[number], before
+                        moved_line, driver, driven, which, pair, azimuth, open_by, lean, number, before
                     )
                     moved[k] = min(AGAIN * abs(took[k] - before), FAR)
             most, looks = took.max(), False
@@ -352,3 +360,37 @@ def take(
             if not looks:
                 break
         losses[row] = most
+
+
+ARRAYS = (
+    "int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[:, ::1], "
+    "float64[::1], float64[:, ::1], float64[::1]"
+)
+
+
+def losses_by(
+    kernel: Kernel,
+    kinds: tuple[Callable[..., Any], Callable[..., Any]],
+    mesh: tuple[Sequence[float], Sequence[float], Sequence[float]],
+    how: Sequence[int],
+    built: tuple[Array, Array, Integers],
+    rows: tuple[Integers, Array, Array, Array, Array],
+) -> Array:
+    """Loss of backlash by the flanks of a side [mm], (rows,).
+
+    Args:
+        kernel, kinds: `take` for kinds of teeth and line, and these.
+        mesh: numbers of driver, driven and line; see the kinds.
+        how: `which` of `take`.
+        built: deviations of both gears' flanks, and the trial of each row, as in `take`.
+        rows: first, angles, lean, apart and shifts, as in `take`.
+    """
+    losses = np.empty(len(rows[0]))
+    each = (np.require(row, requirements=["C", "W"]) for row in rows)
+    driver, driven, line = kinds[0](*mesh[0]), kinds[0](*mesh[1]), kinds[1](*mesh[2])
+    kernel(driver, driven, line, np.array(how), *built, *each, losses)
+    return losses
+
+
+take_on_line = Kernel(take, (GearTeeth, GearTeeth, LineOfContact), ARRAYS, level=QUICK)
+taken = partial(losses_by, take_on_line, (GearTeeth, LineOfContact))

@@ -164,7 +164,7 @@ class ToothPairs:
             side: 1 where the driver's right flanks touch, -1 where its left ones do.
             built: their trials.
             driver_angle: (rows,) [rad].
-            lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm]; of helical gears
+            lean: (trials, 1), loss by tilted axes at the upper end of the common face, signed [mm]; of helical gears
                 (trials, 5): with the strain of the driven gear less that of the driver, the changes per height of a
                 tooth's roll on the line of centres [rad/mm] and of the tangent, see _shifts, and the lean of the driven
                 axis across the line of action, outwards from the driver's.
@@ -178,14 +178,14 @@ class ToothPairs:
         teeth, count = self._teeth(side, driver_angle)
         places = (self.driver.ahead, self.driven.ahead, first.teeth, second.teeth)
         line: tuple[float, ...] = (self._tangent, start, first.angular_pitch, half)
-        kernel, cosine = importlib.import_module(KERNELS).taken, self.pair.base_helix_cosine
+        kernels, cosine = KERNELS, self.pair.base_helix_cosine
         if first.helix_angle:
             fall = first.hand * math.tan(first.base_helix_angle) / half
             up = first.hand * math.sin(first.base_helix_angle) * cosine
             at_pitch = first.iso_sign * math.tan(self.pair.working_pressure_angle)
             line = (*line, first.twist, fall, at_pitch, cosine**2, up)
-            kernel = importlib.import_module(LINE_KERNELS).taken_on_lines
-        found: Array = kernel(
+            kernels = LINE_KERNELS
+        found: Array = importlib.import_module(kernels).taken(
             (*self._measures, line),
             (side, WHO_TURNS[turns], count, *places),
             (built.driver, built.driven, built.trial) if cosine == 1.0 else built.in_section(cosine),

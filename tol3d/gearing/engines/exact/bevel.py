@@ -11,8 +11,8 @@ from typing import NamedTuple
 from tol3d.gearing.engines.exact.foot import (
     PER_TURN,
     TURN,
+    alike,
     external,
-    flank_of,
     foot,
     grown,
     line_of_action,
@@ -49,6 +49,7 @@ class BevelTooth(NamedTuple):
 
 
 external(BevelTooth)
+alike(BevelTooth)
 straight(BevelTooth)
 
 
@@ -59,12 +60,6 @@ def bevel_grown(tooth: BevelTooth, scale: float) -> BevelTooth:
     return BevelTooth(
         tooth.base, tooth.cosine, tooth.per_base, tooth.per_cosine, tooth.half, tooth.begin, tooth.end, low, high
     )
-
-
-@variant(flank_of, BevelTooth)
-def bevel_flank(tooth: BevelTooth, flanks: float, gear: int, place: float, sigma: float) -> BevelTooth:
-    """All flanks are alike."""
-    return tooth
 
 
 @variant(section, BevelTooth)

@@ -7,9 +7,21 @@ millimetres. Neglected terms are of the order of (its slope)^2 times itself, 1e-
 import math
 from typing import Any, NamedTuple
 
-from tol3d.gearing.engines.exact.foot import external, flank_of, foot, grown, line_of_action, section, straight, turn_to
+from tol3d.gearing.engines.exact.foot import (
+    Integers,
+    external,
+    flank_of,
+    flanks_in,
+    foot,
+    grown,
+    line_of_action,
+    section,
+    straight,
+    turn_to,
+)
 from tol3d.gearing.engines.exact.numbers import CLOSED, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.spur import SpurTooth
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part, variant
 
 TURN = 2.0 * math.pi
@@ -146,8 +158,14 @@ def offset_at(tooth: Any, roll: float, z: float) -> Offset:
     return offset_of(tooth, roll, z, cos, sin)
 
 
+def offsets_in(tooth: Any, offsets: Array, builds: Integers, places: Integers, row: int) -> FlankOffsets:
+    """Those of its build."""
+    return FlankOffsets(offsets[builds[row]], places)
+
+
 external(DeviatedTooth)
 straight(DeviatedTooth)
+variant(flanks_in, DeviatedTooth)(offsets_in)
 
 
 @variant(grown, DeviatedTooth)

@@ -22,21 +22,26 @@ from tol3d.gearing.engines.exact.deviated import (
     Offset,
     is_level,
     offset_at,
+    offsets_in,
 )
 from tol3d.gearing.engines.exact.foot import (
     begun,
     external,
     first_face,
     flank_of,
+    flanks_in,
     foot,
     grown,
     leaning,
     line_of_action,
     middle_face,
+    never_quickly,
     no_promise,
     opening,
     promise,
+    quick_turn,
     section,
+    sense_of,
     turn_to,
 )
 from tol3d.gearing.engines.exact.helical import HelicalTooth, between
@@ -76,11 +81,6 @@ class DeviatedHelicalTooth(NamedTuple):
     helix: float
 
 
-def sense_of(tooth: Any) -> float:
-    """1 of an external gear, -1 of a ring; one variant a kind."""
-    raise NotImplementedError
-
-
 def plain_screw(tooth: Any) -> Any:
     """The screw involutes from which flanks deviate; one variant a kind."""
     raise NotImplementedError
@@ -94,12 +94,8 @@ def of_screw(tooth: Any, screw: Any, scale: float, flank: tuple[float, float, fl
 external(DeviatedHelicalTooth)
 variant(first_face, DeviatedHelicalTooth)(middle_face)
 variant(promise, DeviatedHelicalTooth)(no_promise)
-
-
-@variant(sense_of, DeviatedHelicalTooth)
-def external_sense(tooth: DeviatedHelicalTooth) -> float:
-    """Both gears' strings unwind from the inside."""
-    return 1.0
+variant(flanks_in, DeviatedHelicalTooth)(offsets_in)
+variant(quick_turn, DeviatedHelicalTooth)(never_quickly)
 
 
 @variant(plain_screw, DeviatedHelicalTooth)

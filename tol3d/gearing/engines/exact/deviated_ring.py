@@ -6,6 +6,7 @@ flank shortens the string of the space's involute by as much as that of an exter
 
 from typing import NamedTuple
 
+from tol3d.gearing.engines.exact.deviated import offsets_in
 from tol3d.gearing.engines.exact.deviated_helical import (
     deviated_screw_begun,
     deviated_screw_flank,
@@ -17,20 +18,22 @@ from tol3d.gearing.engines.exact.deviated_helical import (
     deviated_screw_turn,
     of_screw,
     plain_screw,
-    sense_of,
 )
 from tol3d.gearing.engines.exact.foot import (
     begun,
     first_face,
     flank_of,
+    flanks_in,
     foot,
     grown,
     internal,
     leaning,
     line_of_action,
     middle_face,
+    never_quickly,
     no_promise,
     promise,
+    quick_turn,
     section,
     turn_to,
 )
@@ -73,21 +76,17 @@ for shared, own in (
     (begun, deviated_screw_begun),
     (first_face, middle_face),
     (flank_of, deviated_screw_flank),
+    (flanks_in, offsets_in),
     (foot, deviated_screw_foot),
     (grown, deviated_screw_grown),
     (leaning, deviated_screw_leaning),
     (line_of_action, deviated_screw_line_of_action),
     (promise, no_promise),
+    (quick_turn, never_quickly),
     (section, deviated_screw_section),
     (turn_to, deviated_screw_turn),
 ):
     variant(shared, DeviatedInternalHelicalTooth)(own)
-
-
-@variant(sense_of, DeviatedInternalHelicalTooth)
-def ring_sense(tooth: DeviatedInternalHelicalTooth) -> float:
-    """Its own."""
-    return tooth.sense
 
 
 @variant(plain_screw, DeviatedInternalHelicalTooth)

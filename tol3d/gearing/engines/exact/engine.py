@@ -16,6 +16,7 @@ from tol3d.gearing.engines.exact.deviated_ring import DeviatedInternalHelicalToo
 from tol3d.gearing.engines.exact.flank_contact import ALL_TEETH, DRIVEN_TOOTH, DRIVER_TOOTH
 from tol3d.gearing.engines.exact.helical import HelicalTooth, InternalHelicalTooth
 from tol3d.gearing.engines.exact.kernels import (
+    NO_FLANKS,
     PairKernels,
     deviated_gaps,
     deviated_helical_gaps,
@@ -196,16 +197,11 @@ class ExactEngine:
 
 
 def _arrays(build: Build, pair: PairKernels) -> tuple[NDArray[Any], ...]:
-    each: tuple[NDArray[Any], ...] = (
-        build.world_from_shaft,
-        build.centre,
-        build.flank_turn,
-        build.flank_offset,
-        build.scale,
-    )
+    each = (build.world_from_shaft, build.centre, build.flank_turn, build.flank_offset, build.scale)
+    flanks: tuple[NDArray[Any], ...] = NO_FLANKS
     if pair.flanks is not None and build.flanks is not None:
-        each += (build.flanks.values, build.flanks.row, pair.flanks)
-    return tuple(_array(values) for values in each)
+        flanks = (build.flanks.values, build.flanks.row, pair.flanks)
+    return tuple(_array(values) for values in (*each, *flanks))
 
 
 def _array(values: NDArray[Any]) -> NDArray[Any]:

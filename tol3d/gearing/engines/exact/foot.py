@@ -6,8 +6,14 @@ The bodies here are never run: as a kernel is compiled for a kind of teeth, each
 import math
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tol3d.gearing.engines.exact.numbers import Facing, Foot, Nearest, Start
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import variant
+
+Integers = NDArray[np.int64]
 
 TURN = 2.0 * math.pi
 PER_TURN = 1.0 / TURN
@@ -61,6 +67,37 @@ def flank_of(tooth: Any, flanks: Any, gear: int, place: float, sigma: float) -> 
         place: which tooth, as the mesh counts.
         sigma: side of the driver's flank.
     """
+    raise NotImplementedError
+
+
+def flanks_in(tooth: Any, offsets: Array, builds: Integers, places: Integers, row: int) -> Any:
+    """Offsets of single flanks of both gears in a row, 0 where all are alike; one variant a kind.
+
+    Args:
+        tooth: the driver's teeth.
+        offsets, builds: of FlankDeviations, its values and rows; empty where all are alike.
+        places: of driver and driven, see deviated.FlankOffsets; empty likewise.
+        row: of the build.
+    """
+    raise NotImplementedError
+
+
+def quick_turn(driver: Any, build: Any, at: Any, look: Any) -> tuple[bool, float]:
+    """The smallest turn of the driven gear [rad] that closes a pair of a side; True if it is certain.
+
+    One variant a kind; for most kinds it never is.
+
+    Args:
+        driver: the driver's teeth.
+        build: a MeshBuild.
+        at: where its gears stand.
+        look: side and place.
+    """
+    raise NotImplementedError
+
+
+def sense_of(tooth: Any) -> float:
+    """Sense in which a gear's involutes unwind: 1 of an external gear, -1 of a ring's space; by its kind."""
     raise NotImplementedError
 
 
@@ -131,6 +168,7 @@ def promise(own: Any, mate: Any, pose: Any, sigma: float, start: float, apart: f
 
 def external(kind: type) -> None:
     """Register the gears of a kind as external; see foot.py."""
+    variant(sense_of, kind)(external_sense)
     variant(opening, kind)(external_opening)
     variant(handed, kind)(external_side)
     variant(widest, kind)(external_radius)
@@ -138,9 +176,17 @@ def external(kind: type) -> None:
 
 def internal(kind: type) -> None:
     """Register the gears of a kind, which know their sense, as those of internal pairs; see internal.py."""
+    variant(sense_of, kind)(own_sense)
     variant(opening, kind)(internal_opening)
     variant(handed, kind)(internal_side)
     variant(widest, kind)(internal_radius)
+
+
+def alike(kind: type) -> None:
+    """Register a kind of teeth all of whose flanks are alike."""
+    variant(flank_of, kind)(tooth_itself)
+    variant(flanks_in, kind)(no_offsets)
+    variant(quick_turn, kind)(never_quickly)
 
 
 def straight(kind: type) -> None:
@@ -149,6 +195,21 @@ def straight(kind: type) -> None:
     variant(first_face, kind)(middle_face)
     variant(promise, kind)(no_promise)
     variant(begun, kind)(as_given)
+
+
+def tooth_itself(tooth: Any, flanks: Any, gear: int, place: float, sigma: float) -> Any:
+    """The gear's teeth."""
+    return tooth
+
+
+def no_offsets(tooth: Any, offsets: Array, builds: Integers, places: Integers, row: int) -> float:
+    """None."""
+    return 0.0
+
+
+def never_quickly(driver: Any, build: Any, at: Any, look: Any) -> tuple[bool, float]:
+    """Not known."""
+    return False, 0.0
 
 
 def middle_face(own: Any, mate: Any, pose: Any, sigma: float, face: float) -> float:
@@ -169,6 +230,16 @@ def no_promise(own: Any, mate: Any, pose: Any, sigma: float, start: float, apart
 def straight_leaning(tooth: Any, sigma: float) -> float:
     """The parameter stays."""
     return 0.0
+
+
+def external_sense(tooth: Any) -> float:
+    """The string of both gears' involutes unwinds outwards."""
+    return 1.0
+
+
+def own_sense(tooth: Any) -> Any:
+    """Of the gear or of its mate, which is a ring."""
+    return tooth.sense
 
 
 def external_opening(driven: Any) -> float:

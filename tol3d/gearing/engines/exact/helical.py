@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 from tol3d.gearing.engines.exact.foot import (
     PER_TURN,
     TURN,
+    alike,
     as_given,
     begun,
     external,
     first_face,
-    flank_of,
     foot,
     grown,
     internal,
@@ -25,12 +25,13 @@ from tol3d.gearing.engines.exact.foot import (
     line_of_action,
     promise,
     section,
+    sense_of,
     turn_to,
     widest,
 )
 from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.spur import SHORTEST_TANGENT
-from tol3d.numerics.compiled import inlined, part, variant
+from tol3d.numerics.compiled import part, variant
 
 FREE_ENDS = 0.2  # mm; by which the ends of contact lines may lie elsewhere than nominal gears have them
 SQUARES = 2e-5  # mm; of leans of a milliradian over a face of 20 mm
@@ -60,51 +61,73 @@ class HelicalTooth(NamedTuple):
     high: float
 
 
-external(HelicalTooth)
-variant(begun, HelicalTooth)(as_given)
+class InternalHelicalTooth(NamedTuple):
+    """Flanks of one gear of an internal helical pair; see HelicalTooth and internal.InternalTooth.
+
+    Args:
+        base, per_arm, cosine, rise, twist: as of a helical gear.
+        half: half the angle [rad] that the involutes' own tooth takes at its base: of a ring the space, about the
+            middle of the ring's tooth, which is less by half a pitch.
+        begin, end: roll times sense [rad] where the flank begins at the root, and at the tip.
+        low, high: ends of the face [mm], along the axis.
+        sense: 1 of the pinion, -1 of the ring.
+    """
+
+    base: float
+    per_arm: float
+    cosine: float
+    rise: float
+    twist: float
+    half: float
+    begin: float
+    end: float
+    low: float
+    high: float
+    sense: float
 
 
-@part
-def resized(tooth: HelicalTooth, scale: float, low: float, high: float) -> HelicalTooth:
-    """The teeth grown, between two heights [mm]."""
+def resized(tooth: Any, scale: float, low: float, high: float) -> Any:
+    """The teeth grown, between two heights [mm]; one variant a kind."""
+    raise NotImplementedError
+
+
+@variant(resized, HelicalTooth)
+def gear_resized(tooth: HelicalTooth, scale: float, low: float, high: float) -> HelicalTooth:
+    """Angles stay."""
     base, per_arm, twist = tooth.base * scale, tooth.per_arm / scale, tooth.twist / scale
     return HelicalTooth(base, per_arm, tooth.cosine, tooth.rise, twist, tooth.half, tooth.begin, tooth.end, low, high)
 
 
-@variant(grown, HelicalTooth)
-def helical_grown(tooth: HelicalTooth, scale: float) -> HelicalTooth:
+@variant(resized, InternalHelicalTooth)
+def ring_resized(tooth: InternalHelicalTooth, scale: float, low: float, high: float) -> InternalHelicalTooth:
+    """Angles stay."""
+    base, per_arm, twist = tooth.base * scale, tooth.per_arm / scale, tooth.twist / scale
+    profile = (tooth.half, tooth.begin, tooth.end)
+    return InternalHelicalTooth(base, per_arm, tooth.cosine, tooth.rise, twist, *profile, low, high, tooth.sense)
+
+
+def screw_grown(tooth: Any, scale: float) -> Any:
     """Every length grows, angles stay."""
     return resized(tooth, scale, tooth.low * scale, tooth.high * scale)
 
 
-@variant(flank_of, HelicalTooth)
-def helical_flank(tooth: HelicalTooth, flanks: float, gear: int, place: float, sigma: float) -> HelicalTooth:
-    """All flanks are alike."""
-    return tooth
-
-
-@variant(section, HelicalTooth)
-def helical_section(tooth: HelicalTooth, share: float) -> HelicalTooth:
+def screw_section(tooth: Any, share: float) -> Any:
     """One height."""
     at = tooth.low + share * (tooth.high - tooth.low)
     return resized(tooth, 1.0, at, at)
 
 
-@variant(leaning, HelicalTooth)
-def helical_leaning(tooth: HelicalTooth, sigma: float) -> float:
-    """dt/dz = -sigma kappa along a generator."""
-    return sigma * tooth.twist
+def screw_leaning(tooth: Any, sigma: float) -> Any:
+    """-sigma kappa of the roll along a generator, times the sense."""
+    return sense_of(tooth) * sigma * tooth.twist
 
 
-@inlined
-def screw_foot(
-    own: Any, mate: Any, senses: tuple[float, float], pose: Pose, facing: Facing, profile: float, z: float
-) -> Foot:
-    """The foot of a point on screw involutes that unwind in their senses, 1 of an external gear, -1 of a ring's space.
+def screw_foot(own: Any, mate: Any, pose: Pose, facing: Facing, profile: float, z: float) -> Foot:
+    """See foot.foot: the point at a roll times sense [rad] and a height [mm]; sigma is the side of unwinding.
 
-    Along a flank counts its roll [rad] times its sense; derivatives by the face are along the generator.
+    Derivatives by the face are along the generator.
     """
-    own_sense, mate_sense = senses
+    own_sense, mate_sense = sense_of(own), sense_of(mate)
     own_azimuth, mate_azimuth, sigma, offset = facing
     roll = own_sense * profile
     phi = sigma * (roll - own.half) + own_azimuth + own.twist * z
@@ -152,27 +175,18 @@ def screw_foot(
     )
 
 
-@variant(foot, HelicalTooth)
-def helical_foot(
-    helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, facing: Facing, roll: float, z: float
-) -> Foot:
-    """See foot.foot: the point at a roll [rad] and a height [mm]."""
-    return screw_foot(helical_tooth, mate, (1.0, 1.0), pose, facing, roll, z)
-
-
-@variant(turn_to, HelicalTooth)
-def helical_turn(mate: HelicalTooth, gap: float, offset: float, at: Foot) -> float:
+def screw_turn(mate: Any, gap: float, offset: float, at: Foot) -> Any:
     """Flanks of one tooth that stand a turn apart lie r_b cos(beta_b) times that apart."""
     return gap * mate.per_arm
 
 
 @part
-def falling(own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigma: float) -> tuple[float, float]:
+def falling(own: Any, mate: Any, pose: Pose, sigma: float) -> tuple[float, float]:
     """Opening of the gap per height along the contact lines, nearly; and the tangent of both base circles [mm].
 
-    (0, 0) of parallel axes, and where there is no such tangent. The senses are those of screw_foot.
+    (0, 0) of parallel axes, and where there is no such tangent.
     """
-    own_sense, mate_sense = senses
+    own_sense, mate_sense = sense_of(own), sense_of(mate)
     outside = own_sense * mate_sense
     square, bases = pose.x * pose.x + pose.y * pose.y, outside * (own_sense * own.base + mate_sense * mate.base)
     if (pose.xz == 0.0 and pose.yz == 0.0) or square <= bases * bases:
@@ -189,10 +203,9 @@ def falling(own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigma:
     return mate_sense * sigma * (mate.cosine * (uy * gx - ux * gy) + mate.rise * gz), tangent
 
 
-@inlined
-def first_end(own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigma: float, face: float) -> float:
+def first_end(own: Any, mate: Any, pose: Pose, sigma: float, face: float) -> float:
     """The end of the common face towards which all contact lines close as axes lean; the middle of parallel axes."""
-    rate, tangent = falling(own, mate, senses, pose, sigma)
+    rate, tangent = falling(own, mate, pose, sigma)
     if tangent == 0.0:
         return face
     low: float = max(own.low, mate.low - pose.z)
@@ -200,23 +213,14 @@ def first_end(own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigm
     return low if rate > 0.0 else high
 
 
-@variant(first_face, HelicalTooth)
-def helical_first_face(helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float, face: float) -> float:
-    """See first_end."""
-    return first_end(helical_tooth, mate, (1.0, 1.0), pose, sigma, face)
-
-
-@inlined
-def screw_promise(
-    own: Any, mate: Any, senses: tuple[float, float], pose: Pose, sigma: float, start: float, apart: float
-) -> tuple[float, float]:
+def screw_promise(own: Any, mate: Any, pose: Pose, sigma: float, start: float, apart: float) -> tuple[float, float]:
     """The opening by the lean at the lower end of a contact line, to first order; see stack_up/contact_lines.py.
 
     A line beside the flanks stands off by at least half its distance squared over their relative radius of curvature.
     The leeway covers mates that stand apart, whose lines end elsewhere, and what goes with squares of the lean.
     """
-    own_sense, mate_sense = senses
-    rate, tangent = falling(own, mate, senses, pose, sigma)
+    own_sense, mate_sense = sense_of(own), sense_of(mate)
+    rate, tangent = falling(own, mate, pose, sigma)
     if tangent == 0.0 or own.twist == 0.0:
         return 0.0, 0.0
     lean = own_sense * sigma * own.twist
@@ -233,14 +237,6 @@ def screw_promise(
     return order, leeway + abs(rate) * 2.0 * beside * own.cosine / abs(own.rise)
 
 
-@variant(promise, HelicalTooth)
-def helical_promise(
-    helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, sigma: float, start: float, apart: float
-) -> tuple[float, float]:
-    """See screw_promise."""
-    return screw_promise(helical_tooth, mate, (1.0, 1.0), pose, sigma, start, apart)
-
-
 @part
 def between(low: float, high: float, at: float, fall: float, begin: float, end: float) -> tuple[float, float]:
     """The heights between two others at which a profile `at - fall z` lies between its ends."""
@@ -250,16 +246,13 @@ def between(low: float, high: float, at: float, fall: float, begin: float, end: 
     return max(low, min(first, last)), min(high, max(first, last))
 
 
-@inlined
-def screw_line_of_action(
-    own: Any, mate: Any, senses: tuple[float, float], pose: Pose, facing: Facing, face: float
-) -> Nearest:
+def screw_line_of_action(own: Any, mate: Any, pose: Pose, facing: Facing, face: float) -> Nearest:
     """On parallel axes the flanks of a pair touch along a line: in every section as spur flanks, turned, do.
 
     The gap is the same along that line, and for every pair of one base pitch; see spur.spur_line_of_action and, of
     rings, internal.internal_line_of_action. Of the line there are the heights at which both flanks have its rolls.
     """
-    own_sense, mate_sense = senses
+    own_sense, mate_sense = sense_of(own), sense_of(mate)
     outside = own_sense * mate_sense
     own_azimuth, mate_azimuth, sigma, offset = facing
     nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
@@ -309,128 +302,19 @@ def screw_line_of_action(
     )
 
 
-@variant(line_of_action, HelicalTooth)
-def helical_line_of_action(
-    helical_tooth: HelicalTooth, mate: HelicalTooth, pose: Pose, facing: Facing, face: float
-) -> Nearest:
-    """See screw_line_of_action."""
-    return screw_line_of_action(helical_tooth, mate, (1.0, 1.0), pose, facing, face)
-
-
-# gears inside rings -------------------------------------------------------------------------------
-
-
-class InternalHelicalTooth(NamedTuple):
-    """Flanks of one gear of an internal helical pair; see HelicalTooth and internal.InternalTooth.
-
-    Args:
-        base, per_arm, cosine, rise, twist: as of a helical gear.
-        half: half the angle [rad] that the involutes' own tooth takes at its base: of a ring the space, about the
-            middle of the ring's tooth, which is less by half a pitch.
-        begin, end: roll times sense [rad] where the flank begins at the root, and at the tip.
-        low, high: ends of the face [mm], along the axis.
-        sense: 1 of the pinion, -1 of the ring.
-    """
-
-    base: float
-    per_arm: float
-    cosine: float
-    rise: float
-    twist: float
-    half: float
-    begin: float
-    end: float
-    low: float
-    high: float
-    sense: float
-
-
+external(HelicalTooth)
 internal(InternalHelicalTooth)
-variant(begun, InternalHelicalTooth)(as_given)
-
-
-@part
-def ring_resized(tooth: InternalHelicalTooth, scale: float, low: float, high: float) -> InternalHelicalTooth:
-    """The teeth grown, between two heights [mm]."""
-    base, per_arm, twist = tooth.base * scale, tooth.per_arm / scale, tooth.twist / scale
-    profile = (tooth.half, tooth.begin, tooth.end)
-    return InternalHelicalTooth(base, per_arm, tooth.cosine, tooth.rise, twist, *profile, low, high, tooth.sense)
-
-
-@variant(grown, InternalHelicalTooth)
-def ring_grown(tooth: InternalHelicalTooth, scale: float) -> InternalHelicalTooth:
-    """Every length grows, angles stay."""
-    return ring_resized(tooth, scale, tooth.low * scale, tooth.high * scale)
-
-
-@variant(flank_of, InternalHelicalTooth)
-def ring_flank(
-    tooth: InternalHelicalTooth, flanks: float, gear: int, place: float, sigma: float
-) -> InternalHelicalTooth:
-    """All flanks are alike."""
-    return tooth
-
-
-@variant(section, InternalHelicalTooth)
-def ring_section(tooth: InternalHelicalTooth, share: float) -> InternalHelicalTooth:
-    """One height."""
-    at = tooth.low + share * (tooth.high - tooth.low)
-    return ring_resized(tooth, 1.0, at, at)
-
-
-@variant(leaning, InternalHelicalTooth)
-def ring_leaning(tooth: InternalHelicalTooth, sigma: float) -> float:
-    """-sigma kappa of the roll along a generator, times the sense."""
-    return tooth.sense * sigma * tooth.twist
-
-
-@variant(foot, InternalHelicalTooth)
-def ring_foot(
-    internal_helical_tooth: InternalHelicalTooth,
-    mate: InternalHelicalTooth,
-    pose: Pose,
-    facing: Facing,
-    profile: float,
-    z: float,
-) -> Foot:
-    """See foot.foot: the point at a roll times sense [rad] and a height [mm]; sigma is the side of unwinding."""
-    senses = (internal_helical_tooth.sense, mate.sense)
-    return screw_foot(internal_helical_tooth, mate, senses, pose, facing, profile, z)
-
-
-@variant(turn_to, InternalHelicalTooth)
-def ring_turn(mate: InternalHelicalTooth, gap: float, offset: float, at: Foot) -> float:
-    """Flanks of one tooth that stand a turn apart lie r_b cos(beta_b) times that apart."""
-    return gap * mate.per_arm
-
-
-@variant(first_face, InternalHelicalTooth)
-def ring_first_face(
-    internal_helical_tooth: InternalHelicalTooth, mate: InternalHelicalTooth, pose: Pose, sigma: float, face: float
-) -> float:
-    """See first_end."""
-    senses = (internal_helical_tooth.sense, mate.sense)
-    return first_end(internal_helical_tooth, mate, senses, pose, sigma, face)
-
-
-@variant(promise, InternalHelicalTooth)
-def ring_promise(
-    internal_helical_tooth: InternalHelicalTooth,
-    mate: InternalHelicalTooth,
-    pose: Pose,
-    sigma: float,
-    start: float,
-    apart: float,
-) -> tuple[float, float]:
-    """See screw_promise."""
-    senses = (internal_helical_tooth.sense, mate.sense)
-    return screw_promise(internal_helical_tooth, mate, senses, pose, sigma, start, apart)
-
-
-@variant(line_of_action, InternalHelicalTooth)
-def ring_line_of_action(
-    internal_helical_tooth: InternalHelicalTooth, mate: InternalHelicalTooth, pose: Pose, facing: Facing, face: float
-) -> Nearest:
-    """See screw_line_of_action."""
-    senses = (internal_helical_tooth.sense, mate.sense)
-    return screw_line_of_action(internal_helical_tooth, mate, senses, pose, facing, face)
+for kind in (HelicalTooth, InternalHelicalTooth):
+    alike(kind)
+    for function, own in (
+        (grown, screw_grown),
+        (section, screw_section),
+        (leaning, screw_leaning),
+        (foot, screw_foot),
+        (turn_to, screw_turn),
+        (begun, as_given),
+        (first_face, first_end),
+        (promise, screw_promise),
+        (line_of_action, screw_line_of_action),
+    ):
+        variant(function, kind)(own)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tol3d.gearing.engines.exact.foot import (
     PER_TURN,
     TURN,
-    flank_of,
+    alike,
     foot,
     grown,
     internal,
@@ -22,8 +22,8 @@ from tol3d.gearing.engines.exact.foot import (
     straight,
     turn_to,
 )
-from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
-from tol3d.gearing.engines.exact.spur import involute_foot
+from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Nearest, Pose
+from tol3d.gearing.engines.exact.spur import involute_foot, involute_turn
 from tol3d.numerics.compiled import variant
 
 
@@ -50,7 +50,10 @@ class InternalTooth(NamedTuple):
 
 
 internal(InternalTooth)
+alike(InternalTooth)
 straight(InternalTooth)
+variant(foot, InternalTooth)(involute_foot)
+variant(turn_to, InternalTooth)(involute_turn)
 
 
 @variant(grown, InternalTooth)
@@ -60,31 +63,11 @@ def internal_grown(tooth: InternalTooth, scale: float) -> InternalTooth:
     return InternalTooth(base, 1.0 / base, tooth.half, tooth.begin, tooth.end, low, high, tooth.sense)
 
 
-@variant(flank_of, InternalTooth)
-def internal_flank(tooth: InternalTooth, flanks: float, gear: int, place: float, sigma: float) -> InternalTooth:
-    """All flanks are alike."""
-    return tooth
-
-
 @variant(section, InternalTooth)
 def internal_section(tooth: InternalTooth, share: float) -> InternalTooth:
     """One height."""
     at = tooth.low + share * (tooth.high - tooth.low)
     return InternalTooth(tooth.base, tooth.per_base, tooth.half, tooth.begin, tooth.end, at, at, tooth.sense)
-
-
-@variant(foot, InternalTooth)
-def internal_foot(
-    internal_tooth: InternalTooth, mate: InternalTooth, pose: Pose, facing: Facing, profile: float, z: float
-) -> Foot:
-    """See foot.foot: the point at a roll times sense [rad] and a height [mm]; sigma is the side of unwinding."""
-    return involute_foot(internal_tooth, mate, (internal_tooth.sense, mate.sense), pose, facing, profile, z)
-
-
-@variant(turn_to, InternalTooth)
-def internal_turn(mate: InternalTooth, gap: float, offset: float, at: Foot) -> float:
-    """Flanks of one tooth that stand a turn apart lie the base radius times that apart."""
-    return gap * mate.per_base
 
 
 @variant(line_of_action, InternalTooth)

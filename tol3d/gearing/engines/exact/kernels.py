@@ -12,21 +12,19 @@ from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.deviated_helical import DeviatedHelicalTooth
 from tol3d.gearing.engines.exact.deviated_ring import DeviatedInternalHelicalTooth
-from tol3d.gearing.engines.exact.deviated_rows import (
-    gap_deviated_rows,
-    read_deviated_rows,
-    rest_all_deviated_rows,
-    rest_deviated_rows,
-)
+from tol3d.gearing.engines.exact.foot import quick_turn
 from tol3d.gearing.engines.exact.helical import HelicalTooth, InternalHelicalTooth
 from tol3d.gearing.engines.exact.internal import InternalTooth
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rests import rest_rows
 from tol3d.gearing.engines.exact.rows import gap_rows, read_rows
 from tol3d.gearing.engines.exact.spur import SpurTooth
+from tol3d.gearing.engines.exact.tooth_contact import turn_by_line
 from tol3d.gears import BevelGear, BevelPair, GearPair, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.gears.pair import CONTACT_MARGIN
-from tol3d.numerics.compiled import Kernel
+from tol3d.numerics.compiled import Kernel, variant
+
+variant(quick_turn, DeviatedTooth)(turn_by_line)
 
 BUILD = "float64[:, :, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1]"
 RESTING = "float64[::1], float64[:, :, ::1], float64[:, :, ::1], int64[:, ::1], int8[:, ::1]"
@@ -35,11 +33,9 @@ GAP = (
     "float64[::1], float64[::1], int64[:, ::1], boolean[:, ::1], "
     "float64[:, ::1], float64[:, :, :, ::1], boolean[:, ::1]"
 )
-READ, GAPS, REST = (f"int64[::1], {BUILD}, {own}" for own in (READING, GAP, RESTING))
 FLANKS = "float64[:, ::1], int64[::1], int64[::1]"
-READ_DEVIATED, GAPS_DEVIATED, REST_DEVIATED = (
-    f"int64[::1], {BUILD}, {FLANKS}, {own}" for own in (READING, GAP, RESTING)
-)
+NO_FLANKS = (np.zeros((0, 0)), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+READ, GAPS, REST = (f"int64[::1], {BUILD}, {FLANKS}, {own}" for own in (READING, GAP, RESTING))
 
 SPUR = (SpurTooth, SpurTooth, PairNumbers, Pose)
 DEVIATED = (DeviatedTooth, DeviatedTooth, PairNumbers, Pose)
@@ -60,15 +56,14 @@ internal_rests = Kernel(rest_rows, INTERNAL, REST)
 internal_helical_read = Kernel(read_rows, INTERNAL_HELICAL, READ)
 internal_helical_gaps = Kernel(gap_rows, INTERNAL_HELICAL, GAPS)
 internal_helical_rests = Kernel(rest_rows, INTERNAL_HELICAL, REST)
-deviated_read = Kernel(read_deviated_rows, DEVIATED, READ_DEVIATED)
-deviated_gaps = Kernel(gap_deviated_rows, DEVIATED, GAPS_DEVIATED)
-deviated_rests = Kernel(rest_deviated_rows, DEVIATED, REST_DEVIATED)
-deviated_helical_read = Kernel(read_deviated_rows, DEVIATED_HELICAL, READ_DEVIATED)
-deviated_helical_gaps = Kernel(gap_deviated_rows, DEVIATED_HELICAL, GAPS_DEVIATED)
-deviated_helical_rests = Kernel(rest_all_deviated_rows, DEVIATED_HELICAL, REST_DEVIATED)
-deviated_internal_helical_read = Kernel(read_deviated_rows, DEVIATED_INTERNAL_HELICAL, READ_DEVIATED)
-deviated_internal_helical_gaps = Kernel(gap_deviated_rows, DEVIATED_INTERNAL_HELICAL, GAPS_DEVIATED)
-deviated_internal_helical_rests = Kernel(rest_all_deviated_rows, DEVIATED_INTERNAL_HELICAL, REST_DEVIATED)
+deviated_read, deviated_gaps = Kernel(read_rows, DEVIATED, READ), Kernel(gap_rows, DEVIATED, GAPS)
+deviated_rests = Kernel(rest_rows, DEVIATED, REST)
+deviated_helical_read = Kernel(read_rows, DEVIATED_HELICAL, READ)
+deviated_helical_gaps = Kernel(gap_rows, DEVIATED_HELICAL, GAPS)
+deviated_helical_rests = Kernel(rest_rows, DEVIATED_HELICAL, REST)
+deviated_internal_helical_read = Kernel(read_rows, DEVIATED_INTERNAL_HELICAL, READ)
+deviated_internal_helical_gaps = Kernel(gap_rows, DEVIATED_INTERNAL_HELICAL, GAPS)
+deviated_internal_helical_rests = Kernel(rest_rows, DEVIATED_INTERNAL_HELICAL, REST)
 
 
 @dataclass(frozen=True, eq=False)

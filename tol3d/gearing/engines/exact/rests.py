@@ -1,6 +1,7 @@
 """Both rests of a mesh at many positions: one contact per side and position, each build made once for all.
 
-A position begins at the previous rest, so that the gears hardly have to turn.
+A position begins at the previous rest, so that the gears hardly have to turn. Of some kinds of teeth all positions but
+the first are known from the line of action, see tooth_contact.turn_by_line; all others are evaluated as usual.
 """
 
 from typing import Any
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.engines.exact.flank_contact import Look, MeshBuild, closed, seen, standing
-from tol3d.gearing.engines.exact.foot import opening
+from tol3d.gearing.engines.exact.foot import flanks_in, opening, quick_turn
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.reach import within_reach
 from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, write_contact
@@ -46,24 +47,28 @@ def rest_row(
     ahead, behind = opened, -opened
     for k in range(len(driver_angles)):
         angle = driver_angles[k]
-        middle, arm, fault = pair.driven_start - angle / pair.ratio, 0.0, OK
+        middle, arm, fault = pair.driven_start - angle / pair.ratio, build.driven.base, OK
         for side in range(2):
             look = Look(sigma if side == 0 else -sigma, which[3], which[4] != 0, 1.0)
             start = standing(build, angle, middle + (ahead if side == 0 else behind))
-            at, touching = closed(seen(build, start, angle, look), build, start, look)
-            own = fault_of(touching)
-            fault = max(fault, own)
-            if own != OK:
-                continue
-            rests[row, k, side] = at.driven
-            arm = abs(touching.ny * touching.x - touching.nx * touching.y)
+            known, turn = quick_turn(build.driver, build, start, look) if k > 0 else (False, 0.0)
+            driven = start.driven - look.sigma * turn
+            if not known:
+                at, touching = closed(seen(build, start, angle, look), build, start, look)
+                own = fault_of(touching)
+                fault = max(fault, own)
+                if own != OK:
+                    continue
+                driven = at.driven
+                arm = abs(touching.ny * touching.x - touching.nx * touching.y)
+                if k == 0:
+                    write_contact(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
+                    teeth[row, side] = touching.tooth
+            rests[row, k, side] = driven
             if side == 0:
-                ahead = at.driven - middle
+                ahead = driven - middle
             else:
-                behind = at.driven - middle
-            if k == 0:
-                write_contact(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
-                teeth[row, side] = touching.tooth
+                behind = driven - middle
         if fault == OK and sigma * opening(build.driven) * (behind - ahead) * arm < -FREE:
             fault = INTERFERES
         status[row, k] = fault
@@ -80,6 +85,9 @@ def rest_rows(
     flank_turn: Array,
     flank_offset: Array,
     scale: Array,
+    offsets: Array,
+    builds: Integers,
+    places: Integers,
     driver_angles: Array,
     rests: Array,
     contact: Array,
@@ -89,7 +97,7 @@ def rest_rows(
     """Seat every build at every position on both sides.
 
     Args:
-        pinion, wheel, pair, nominal, shafts ... scale: as in `read_rows`.
+        pinion, wheel, pair, nominal, shafts ... places: as in `read_rows`.
         which: driver and driven in the arrays of the build; working flank; teeth; whether the contact is that of the
             section.
         driver_angles: (positions,) [rad].
@@ -100,5 +108,6 @@ def rest_rows(
     """
     gears = (which[0], which[1])
     for row in range(len(shafts)):
-        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, 0.0)
+        own = flanks_in(pinion, offsets, builds, places, row)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, own)
         rest_row(build, which, shafts, flank_offset, scale, row, driver_angles, rests, contact, teeth, status)

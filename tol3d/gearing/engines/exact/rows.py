@@ -19,7 +19,7 @@ from tol3d.gearing.engines.exact.flank_contact import (
     seen,
     standing,
 )
-from tol3d.gearing.engines.exact.foot import grown, opening, section
+from tol3d.gearing.engines.exact.foot import flanks_in, grown, opening, section
 from tol3d.gearing.engines.exact.nearest import SHARP_FALL
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.reach import within_reach
@@ -157,47 +157,6 @@ def write_contact(contact: Array, side: Side, shaft: Array, out: float) -> None:
 
 
 @part
-def read_row(
-    build: MeshBuild,
-    which: Integers,
-    looks: Looks,
-    shafts: Array,
-    flank_offset: Array,
-    scale: Array,
-    row: int,
-    angle: float,
-    readings: Array,
-    teeth: Integers,
-    status: NDArray[np.int8],
-) -> None:
-    """Seat one row and read it: the body of `read_rows`, which has it written out because that is 15 % faster."""
-    gears, pair, sigma = (which[0], which[1]), build.pair, looks.working.sigma
-    fill(readings[row], np.nan)
-    teeth[row], status[row] = 0, OUT_OF_RANGE
-    if not within_reach(build, scale[row, gears[0]], scale[row, gears[1]]):
-        return
-    opened = build.driver_turn / pair.ratio + build.driven_turn
-    start = standing(build, angle, pair.driven_start - angle / pair.ratio + sigma * opened)
-    at, side = closed(seen(build, start, angle, looks.working), build, start, looks.working)
-    status[row] = fault_of(side)
-    if status[row] != OK:
-        return
-    other = seen(build, at, angle, looks.gap)
-    status[row] = fault_of(other)
-    if status[row] != OK:
-        return
-    status[row] = INTERFERES if other.gap < -FREE else OK
-    readings[row, DRIVEN_ANGLE] = at.driven
-    readings[row, GAP] = other.gap
-    write_contact(readings[row, CONTACT:], side, shafts[row, gears[1]], flank_offset[row, gears[0]])
-    teeth[row] = side.tooth
-    if which[6]:
-        readings[row, DRIVEN_TURN] = free_turn(build, at, other, angle, looks)
-    if which[7]:
-        readings[row, DRIVER_TURN] = sigma * driver_turn(build, at, looks.of_driver)
-
-
-@part
 def gap_row(
     build: MeshBuild,
     which: Integers,
@@ -251,6 +210,9 @@ def read_rows(
     flank_turn: Array,
     flank_offset: Array,
     scale: Array,
+    offsets: Array,
+    builds: Integers,
+    places: Integers,
     driver_angles: Array,
     readings: Array,
     teeth: Integers,
@@ -265,6 +227,7 @@ def read_rows(
         which: indices of driver and driven in the arrays of the build; sign of the working flank; teeth, see Look; 1 if
             the contact, and if the gap, are read in the section; 1 if the turns of driven, and of driver, are wanted.
         shafts, centre, flank_turn, flank_offset, scale: of a Build, (rows, gears, ...).
+        offsets, builds, places: of single flanks, as in foot.flanks_in.
         driver_angles: (rows,) [rad].
         readings: (rows, READINGS), written: the driven gear's angle in contact [rad], the gap of the non-working flanks
             [mm], the turns of driven and driver until they touch [rad], the contact on the driver in the world [mm];
@@ -274,7 +237,8 @@ def read_rows(
     gears, looks = (which[0], which[1]), looks_of(pair, which)
     sigma = looks.working.sigma
     for row in range(len(driver_angles)):
-        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, 0.0)
+        own = flanks_in(pinion, offsets, builds, places, row)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, own)
         angle = driver_angles[row]
         fill(readings[row], np.nan)
         teeth[row], status[row] = 0, OUT_OF_RANGE
@@ -312,6 +276,9 @@ def gap_rows(
     flank_turn: Array,
     flank_offset: Array,
     scale: Array,
+    offsets: Array,
+    builds: Integers,
+    places: Integers,
     driver_angles: Array,
     driven_angles: Array,
     driver_teeth: Integers,
@@ -323,7 +290,7 @@ def gap_rows(
     """Gaps of the wanted tooth pairs.
 
     Args:
-        pinion ... scale: as in `read_rows`, but `which`: indices of driver and driven; sign of the flank; 1 for the
+        pinion ... places: as in `read_rows`, but `which`: indices of driver and driven; sign of the flank; 1 for the
             section.
         driver_angles, driven_angles: (rows,) [rad].
         driver_teeth, wanted: (rows, pairs).
@@ -333,6 +300,7 @@ def gap_rows(
     """
     gears = (which[0], which[1])
     for row in range(len(driver_angles)):
-        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, 0.0)
+        own = flanks_in(pinion, offsets, builds, places, row)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, own)
         angles = (driver_angles[row], driven_angles[row])
         gap_row(build, which, shafts, flank_offset, row, angles, driver_teeth, wanted, value, vectors, at_end)

@@ -11,17 +11,18 @@ from typing import Any, NamedTuple
 from tol3d.gearing.engines.exact.foot import (
     PER_TURN,
     TURN,
+    alike,
     external,
-    flank_of,
     foot,
     grown,
     line_of_action,
     section,
+    sense_of,
     straight,
     turn_to,
 )
 from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
-from tol3d.numerics.compiled import inlined, variant
+from tol3d.numerics.compiled import variant
 
 SHORTEST_TANGENT = 1e-9  # mm; a point within the base circle has none
 
@@ -46,6 +47,7 @@ class SpurTooth(NamedTuple):
 
 
 external(SpurTooth)
+alike(SpurTooth)
 straight(SpurTooth)
 
 
@@ -56,12 +58,6 @@ def spur_grown(tooth: SpurTooth, scale: float) -> SpurTooth:
     return SpurTooth(base, 1.0 / base, tooth.half, tooth.begin, tooth.end, low, high)
 
 
-@variant(flank_of, SpurTooth)
-def spur_flank(tooth: SpurTooth, flanks: float, gear: int, place: float, sigma: float) -> SpurTooth:
-    """All flanks are alike."""
-    return tooth
-
-
 @variant(section, SpurTooth)
 def spur_section(tooth: SpurTooth, share: float) -> SpurTooth:
     """One height."""
@@ -69,15 +65,10 @@ def spur_section(tooth: SpurTooth, share: float) -> SpurTooth:
     return SpurTooth(tooth.base, tooth.per_base, tooth.half, tooth.begin, tooth.end, at, at)
 
 
-@inlined
-def involute_foot(
-    own: Any, mate: Any, senses: tuple[float, float], pose: Pose, facing: Facing, profile: float, z: float
-) -> Foot:
-    """The foot of a point on involutes that unwind in their senses, 1 of an external gear and -1 of a ring's space.
-
-    Along a flank counts its roll [rad] times its sense.
-    """
-    own_sense, mate_sense = senses
+@variant(foot, SpurTooth)
+def involute_foot(own: Any, mate: Any, pose: Pose, facing: Facing, profile: float, z: float) -> Foot:
+    """See foot.foot: the point at a roll times sense [rad] and a height [mm]; sigma is the side of unwinding."""
+    own_sense, mate_sense = sense_of(own), sense_of(mate)
     own_azimuth, mate_azimuth, sigma, offset = facing
     roll = own_sense * profile
     beta = sigma * (roll - own.half) + own_azimuth
@@ -125,14 +116,8 @@ def involute_foot(
     )
 
 
-@variant(foot, SpurTooth)
-def spur_foot(spur_tooth: SpurTooth, mate: SpurTooth, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
-    """See foot.foot: the point at a roll [rad] and a height [mm]."""
-    return involute_foot(spur_tooth, mate, (1.0, 1.0), pose, facing, roll, z)
-
-
 @variant(turn_to, SpurTooth)
-def spur_turn(mate: SpurTooth, gap: float, offset: float, at: Foot) -> float:
+def involute_turn(mate: Any, gap: float, offset: float, at: Foot) -> Any:
     """Flanks of one tooth that stand a turn apart lie the base radius times that apart."""
     return gap * mate.per_base
 

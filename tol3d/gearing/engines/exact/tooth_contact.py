@@ -10,15 +10,31 @@ changes by -(s/L) cos(d - th).
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from tol3d.gearing.engines.exact.deviated import LEAST_BEND, DeviatedTooth, Offset, is_level, offset_of, wave_at
-from tol3d.gearing.engines.exact.foot import PER_TURN, TURN
-from tol3d.gearing.engines.exact.numbers import SMALL, Pose, arcsine, sine
+from tol3d.gearing.engines.exact.flank_contact import (
+    ALL_TEETH,
+    Look,
+    MeshBuild,
+    Turn,
+    azimuths,
+    first_tooth,
+    mating_tooth,
+    pose_at,
+)
+from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, flank_of, section
+from tol3d.gearing.engines.exact.numbers import SMALL, Pose, arcsine, sine, turned
 from tol3d.numerics.compiled import part
 
 STEPS = 4  # of Newton's; two do nearly always
 LAST_FALL = 1e-9  # mm; a step that lowers the gap by less is the last
 SHORTEST = 0.1  # mm; near to its base circle an involute is too sharp to be a parabola
 EDGE_SHARE = 0.5  # of b d^2/2 by which a tip edge has left its mate at least, see edge_gap
+ECCENTRIC = 3e-5  # mm; as seating.ASIDE, by which a mate may move aside on the way to contact
+LATER = (
+    0.9  # of the gap of a tip edge over the base radius: its arm is no longer than the tip radius, see touches_later
+)
 
 
 class Sight(NamedTuple):
@@ -224,3 +240,76 @@ def touch(
         return unknown
     found = gap - first.value + grown - second.value - fall
     return touched(mate, found, second.value, mate_roll, heights[1], (mate_cos, mate_sin), begin - theta, theta)
+
+
+@part
+def turns_later(mate: DeviatedTooth, gap: float, first: Touch) -> bool:
+    """True if a pair with a gap of a tip edge [mm], or more, certainly touches after the first pair."""
+    arm = mate.base * (1.0 + 0.5 * mate.end * mate.end)  # beyond the tip radius, sqrt(1 + t^2) times the base radius
+    return gap > max(first.gap, 0.0) and LATER * gap / arm > first.turn
+
+
+@part
+def far_beyond(
+    deviated_tooth: DeviatedTooth, mate: DeviatedTooth, tangent: float, gap: float, rolls: tuple[float, float]
+) -> float:
+    """The least gap [mm] of a pair beyond the path of contact, whose involutes there are a gap apart."""
+    least, beyond, mate_beyond = (
+        gap - most_out(deviated_tooth) - most_out(mate),
+        rolls[0] - deviated_tooth.end,
+        rolls[1] - mate.end,
+    )
+    if beyond > 0.0:
+        least += edge_gap(deviated_tooth, mate, tangent, beyond)
+    if mate_beyond > 0.0:
+        least += edge_gap(mate, deviated_tooth, tangent, mate_beyond)
+    return least
+
+
+@part
+def aside(at: Turn, line: Sight, its: Touch, sigma: float, base: float) -> float:
+    """The turn [rad] that closes a pair whose mate, eccentric, moves aside as it turns; see seating.aside."""
+    turn = its.turn
+    if at.fx != 0.0 or at.fy != 0.0:
+        nx, ny = turned(line.nx, line.ny, sigma * its.along)
+        for _ in range(2):
+            fx, fy = turned(at.fx, at.fy, -sigma * turn)
+            turn = its.turn - (nx * (fx - at.fx) + ny * (fy - at.fy)) / base
+    return turn
+
+
+def turn_by_line(driver: DeviatedTooth, build: MeshBuild, at: Turn, look: Look) -> tuple[bool, float]:
+    """See foot.quick_turn: of parallel axes, pairs in action one after the other, edges only to know they are later."""
+    sigma, pose, mate = look.sigma, pose_at(build, at), build.driven
+    middle = section(build.driver, build.pair.section)
+    own = middle if look.in_section else build.driver
+    line = sight(own, mate, pose, sigma)
+    if not line.clear or look.teeth != ALL_TEETH:
+        return False, 0.0
+    first, count = first_tooth(build.pair, at.driver, sigma, look.teeth)
+    best = Touch(False, np.inf, np.inf, 0.0)
+    for edges in (False, True):
+        for step in range(count):
+            tooth = sigma * (first + step)
+            azimuth, mate_azimuth = azimuths(build, at, sigma, tooth)
+            rolls = (wrapped(line.own - sigma * azimuth), wrapped(line.mate - sigma * mate_azimuth))
+            if edges != (rolls[0] > own.end or rolls[1] > mate.end):
+                continue
+            flank = flank_of(own, build.flanks, 0, tooth, sigma)
+            mating = flank_of(mate, build.flanks, 1, mating_tooth(mate, tooth, sigma), sigma)
+            gap = line.tangent - own.base * rolls[0] - mate.base * rolls[1] - build.offset
+            if edges and turns_later(mate, far_beyond(flank, mating, line.tangent, gap, rolls), best):
+                continue
+            z = height(flank, mating, line.low, line.high, middle.low)
+            if rolls[1] > mate.end:  # of its edge only the gap is known
+                back, heights = (rolls[1], rolls[0]), (z + pose.z, z)
+                its = touch(mating, flank, line.tangent, gap, back, heights)
+                if not (its.known and turns_later(mate, its.gap, best)):
+                    return False, 0.0
+                continue
+            its = touch(flank, mating, line.tangent, gap, rolls, (z, z + pose.z))
+            if not its.known:
+                return False, 0.0
+            best = Touch(True, min(best.gap, its.gap), min(best.turn, aside(at, line, its, sigma, mate.base)), 0.0)
+    known = best.known and (abs(at.fx) + abs(at.fy)) * abs(best.turn) < ECCENTRIC
+    return known, best.turn
