@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeAlias
 
 import cadquery as cq
 import numpy as np
@@ -24,7 +24,7 @@ LEAST_LEFT: Final = 0.1
 TOO_NEAR: Final = "the drums of the link are too large for how near its joints lie"
 
 Array = NDArray[np.float64]
-End = Proximal | Distal
+End: TypeAlias = Proximal | Distal
 
 
 def cast_link(proximal: Proximal, distal: Distal, wall: float, body: float | None = None) -> NamedSolid:
@@ -123,7 +123,7 @@ def _word(end: End) -> str:
 
 def _middle(end: End) -> Array:
     """The middle of the room for the body."""
-    return np.array(end.centre) + sum(end.room) / 2 * np.array(end.inwards)
+    return np.asarray(np.array(end.centre) + sum(end.room) / 2 * np.array(end.inwards))
 
 
 def _widest(end: End, along: Array, length: float) -> float:

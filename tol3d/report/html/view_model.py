@@ -169,7 +169,7 @@ class ViewModel:
                 continue
             pieces = [(body.name, piece) for body in world.bodies for piece in body.pieces]
             pieces += [(name, body) for name, bodies in world.within.items() for body in bodies]
-            alike = {id(body): "" for bodies in world.within.values() for body in bodies}  # of trains many are
+            alike = {id(body): "" for bodies in world.within.values() for body in bodies}  # many are
             placed = [self._place(piece, alike.get(id(piece), piece.name)) for _, piece in pieces]
             shown, parts = shown or world, parts or tuple(_part(name, piece) for name, piece in pieces)
             poses = tuple(_pose(piece, on) for (_, piece), (_, on) in zip(pieces, placed, strict=True))

@@ -15,6 +15,7 @@ import numpy as np
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.presenting.shown_assembly import Placed
 from tol3d.cad.solids import display_mesh
+from tol3d.errors import RunError
 from tol3d.gearing.machine.grammar.open_chain import OpenChainSpec
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.gearing.model import Model
@@ -30,6 +31,9 @@ COARSE: Final = 0.2
 """mm; deflection of triangles from faces, far below a pixel of a picture of a whole arm."""
 ONE_LINE: Final = 1e-9
 """Sine of an angle, and mm; shafts that cross by less are parallel."""
+APART: Final = 1.0
+"""mm; where the axis of a joint passes the joint before nearer than that, as in a wrist, its input is turned along that
+axis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +60,7 @@ class TrainInJoint:
         pose = np.eye(4)
         if np.linalg.norm(self.towards) > ONE_LINE:
             back = np.linalg.inv(world_from_axis) @ placed.poses[part_of(self.axis)]
-            away = next((own for own in (back[:2, 3], back[:2, 2]) if np.linalg.norm(own) > ONE_LINE), self.towards[:2])
+            away = back[:2, 3] if np.linalg.norm(back[:2, 3]) > APART else back[:2, 2]
             turn = np.arctan2(away[1], away[0]) - np.arctan2(self.towards[1], self.towards[0])
             pose[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
         pose[2, 3] = -self.behind - placed.assembly.features[self.axis].shape.ends[:, 2].max()
@@ -69,10 +73,9 @@ def _moved(body: Body, pose: Array) -> Body:
 
 
 def trains_in_joints(simulation: Simulation) -> tuple[TrainInJoint, ...]:
-    """The trains that turn the joints of an arm, from its nominal build.
+    """The trains that turn the joints of an arm, from its nominal build; none where that cannot be shown.
 
-    Raises:
-        RunError: the nominal build cannot be shown.
+    Trains with shafts in bores are left out: they are shown in the worlds of their gears, where the parts have them.
     """
     system = simulation.system
     assert isinstance(system, MachineSystem)
@@ -88,17 +91,23 @@ def trains_in_joints(simulation: Simulation) -> tuple[TrainInJoint, ...]:
     )
     if not joints:
         return ()
-    display = shown_build(seated_build(replayed(simulation, nominal_build(system)), "nominal"))
+    try:
+        display = shown_build(seated_build(replayed(simulation, nominal_build(system)), "nominal"))
+    except RunError:
+        return ()
     model = system.gears.model
     layout, trains = model.layout, {own.name: own for own in model.trains}
     found = []
     for name, axis in joints:
         train = trains[name]
+        root = layout.root_of[train.output]
+        if root in system.worlds:
+            continue
         output, first = layout.world_from_shaft[train.output], layout.world_from_shaft[train.driven]
         into = np.linalg.inv(output)
         if (into @ first)[2, 3] > ONE_LINE:
             into = np.diag([1.0, -1.0, -1.0, 1.0]) @ into
-        bodies = tuple(_joined(name, list(_parts(display.worlds, model, layout.root_of[train.output])), into))
+        bodies = tuple(_joined(name, list(_parts(display.worlds, model, root)), into))
         if bodies:
             crossing = np.linalg.norm(np.cross(output[:3, 2], first[:3, 2])) > ONE_LINE
             towards = (into @ first)[:3, 3] * (1.0, 1.0, 0.0) if crossing else np.zeros(3)
