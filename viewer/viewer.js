@@ -517,7 +517,8 @@ class View {
     const box = new Box3();
     this.parts.filter((part) => part.visible).forEach((part) => box.expandByObject(part));
     if (box.isEmpty()) this.parts.forEach((part) => box.expandByObject(part));
-    this.#widen(box);
+    const boxes = this.#boxes();
+    boxes.forEach((own) => box.union(own));
     const sphere = box.getBoundingSphere(new Sphere());
     this.reach = Math.max(sphere.radius, 1e-6);
     const up = this.camera.up.clone().normalize();
@@ -534,27 +535,23 @@ class View {
     this.camera.zoom = 1;
     this.controls.update();
     this.camera.updateMatrixWorld(true);
-    this.half = this.#half(box);
+    this.half = this.#half(boxes.length ? boxes : [box], centre);
     this.resize();
     this.draw();
   }
 
-  // A box about parts that are seen, in all poses of their motion.
-  #widen(box) {
+  // Boxes about each part that is seen, in every pose of their motion; none of parts that stand still.
+  #boxes() {
     const state = this.#state(), frames = state.motion?.captions.length ?? 0;
-    for (const index of state.motion?.moved ?? []) {
-      const part = this.parts[index], own = new Matrix4().fromArray(state.poses[index]);
-      for (let frame = 0; part.visible && frame < frames; frame += 1) {
-        box.union(part.geometry.boundingBox.clone().applyMatrix4(own.clone().premultiply(this.#move(state, index, frame))));
-      }
-    }
+    return this.parts.flatMap((part, index) => (part.visible ? Array.from({ length: frames }, (_, frame) => (
+      part.geometry.boundingBox.clone().applyMatrix4(new Matrix4().fromArray(state.poses[index]).premultiply(this.#move(state, index, frame)))
+    )) : []));
   }
 
-  // Half of the width and of the height of a box, as the camera sees it.
-  #half(box) {
-    const found = [1e-6, 1e-6];
-    const centre = box.getCenter(new Vector3()).applyMatrix4(this.camera.matrixWorldInverse);
-    for (let corner = 0; corner < 8; corner += 1) {
+  // Half of the width and of the height of boxes about a place, as the camera sees them.
+  #half(boxes, place) {
+    const found = [1e-6, 1e-6], centre = place.clone().applyMatrix4(this.camera.matrixWorldInverse);
+    for (const box of boxes) for (let corner = 0; corner < 8; corner += 1) {
       const [x, y, z] = [0, 1, 2].map((axis) => (corner >> axis) & 1 ? box.max : box.min);
       const seen = new Vector3(x.x, y.y, z.z).applyMatrix4(this.camera.matrixWorldInverse).sub(centre);
       found[0] = Math.max(found[0], Math.abs(seen.x));
