@@ -79,7 +79,7 @@ def refused(folder: Path, tolerances: str, gears: str = SPUR) -> str:
         (f"{FORM}, shape: barrel, waves: 2", "waves: expected none of a barrel, got waves"),
         (
             "kind: pitch_deviation, of: pair, flanks: each, limits: {iso_class: 5}, " + WALK,
-            "expected the name of a spur gear or a helical gear, got 'pair'",
+            "expected the name of a spur gear or a helical gear or an internal gear, got 'pair'",
         ),
     ],
 )
@@ -92,8 +92,8 @@ def test_what_is_wrong_is_said_with_what_would_do(entry: str, words: str, tmp_pa
 def test_single_flanks_of_bevel_gears_are_refused(tmp_path: Path) -> None:
     message = refused(tmp_path, f"  teeth: {{{PITCH}, limits: {{iso_class: 5}}, {WALK}}}", BEVEL)
     assert (
-        "tolerances.teeth.of: expected the name of a spur gear or a helical gear, got 'pinion', which is a bevel gear"
-        in message
+        "tolerances.teeth.of: expected the name of a spur gear or a helical gear or an internal gear, "
+        "got 'pinion', which is a bevel gear" in message
     )
 
 

@@ -239,9 +239,10 @@ def kernels_in(model: Model, mesh: Mesh, flanks: FlankPlaces) -> PairKernels:
     for name, own in gears:
         gear, seat = mesh.gear(name), model.seats[model.seat_index[mesh.name, name]]
         places += [flanks.starts.get(name, -1), gear.teeth, round(seat.ahead / gear.angular_pitch)]
-        begin, end = flanks.spans.get(name, (gear.form_roll, gear.tip_roll))
-        if isinstance(own, InternalHelicalTooth):
-            begin, end = own.sense * begin, own.sense * end
+        begin, end = own.begin, own.end
+        if name in flanks.spans:
+            sense = own.sense if isinstance(own, InternalHelicalTooth) else 1.0
+            begin, end = (sense * roll for roll in flanks.spans[name])
         shape = ((begin + end) / 2, 1.0 / (end - begin), 1.0 / gear.face_width, flanks.waves.get(name, 0.0))
         each: tuple[float, ...] = (*own, 1.0, *shape, 0.0, 0.0, 0.0, 0.0)
         teeth.append(kind(*each))
