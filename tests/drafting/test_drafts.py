@@ -253,6 +253,23 @@ def test_parts_have_the_names_of_their_products_numbered_where_those_of_their_us
     assert names_of(shared, tmp_path) == [f"wheel_bearing {k}" for k in range(1, 6)]
 
 
+def test_parts_that_nothing_places_are_told_in_a_line_and_measured_from_the_part_that_holds_the_others(
+    tmp_path: Path,
+) -> None:
+    """A plate, seven blocks apart from all, and two that stand on each other beside them."""
+    shapes = {f"block {'abcdefg'[k]}": BLOCK.translate(cq.Vector(300 + 50 * k, 7 * k, 40 * k)) for k in range(7)}
+    shapes |= {"lower": BLOCK.translate(cq.Vector(-200, 0, 0)), "upper": BLOCK.translate(cq.Vector(-193, 3, 20))}
+    text, drafted = scene_from([step_file({**shapes, "plate": PLATE}, tmp_path / "apart.step")])
+    alone, first = list(drafted.notes())
+    assert alone.startswith(
+        "block a, block b, block c, block d, block e, block f and 1 more: no contact with another part, fixed"
+    )
+    assert first.startswith("lower: no contact with a part placed before, fixed there")
+    scene = yaml.safe_load(text)
+    assert next(own["part"] for own in scene["moves"].values()) == "plate"
+    assert scene["measures"]
+
+
 @pytest.fixture
 def two(tmp_path: Path) -> tuple[Path, Path]:
     """Files of two parts, in folders of their own."""

@@ -141,7 +141,7 @@ class Draft:
             if fixed:
                 more = f" and {len(fixed) - MOST_NAMED} more" if len(fixed) > MOST_NAMED else ""
                 names = ", ".join(fixed[:MOST_NAMED]) + more
-                yield f"{names}: {why}, and is fixed there; --seat PART.FACE --on PART.FACE lays it on another"
+                yield f"{names}: {why}, fixed there; --seat PART.FACE --on PART.FACE lays one on another"
 
     def told(self, own: ReadText) -> Iterator[str]:
         """Outcome of each tolerance and dimension of a file, in comments."""

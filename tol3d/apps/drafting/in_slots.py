@@ -81,10 +81,10 @@ def _pins(slotted: DraftedPart, holder: DraftedPart) -> Iterator[InSlot]:
 
 
 def _tabs(slotted: DraftedPart, holder: DraftedPart, facing: Facing) -> Iterator[InSlot]:
-    """Tabs midway between two walls; flat faces of the slotted part and of the other."""
+    """Tabs midway between two walls and with play; flat faces of the slotted part and of the other."""
     for tab in holder.features.part.machined.tabs if facing else ():
         first, second = ([(own, gap) for own, face, gap in facing if face.faces == side.faces] for side in tab.walls)
-        between = [(a, b, gap) for a, gap in first for b, other in second if abs(gap - other) < SAME]
+        between = [(a, b, gap) for a, gap in first for b, other in second if abs(gap - other) < SAME < gap]
         for wall, opposite, gap in between[:1]:
             if tab.width > THINNEST * (width := tab.width + 2 * gap):
                 yield InSlot(holder, slotted, tab, (wall, opposite), width)

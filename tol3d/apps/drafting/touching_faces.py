@@ -19,8 +19,8 @@ TOUCHING: Final = 1e-3  # mm; what models are drawn to
 PARALLEL: Final = 1e-6  # sine, cosine
 LARGEST_BOLT: Final = 3.0  # diameters of the smallest hole beside it
 THINNEST_BOLT: Final = 0.5  # of the wider hole; one that is wider still clears a bolt's head and locates nothing
-ALONE: Final = "it touches no other part as it stands"
-FIRST: Final = "as it stands it touches only parts that are placed after it"
+ALONE: Final = "no contact with another part"
+FIRST: Final = "no contact with a part placed before"
 BOLT_LESS: Final = 0.1  # of the hole, where no position says how much
 
 
