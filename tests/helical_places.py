@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -160,11 +161,10 @@ def assert_mirrored_reads_the_same(pair: SpurPair | InternalPair, rng: np.random
     """Both hands and the flanks exchanged, and every place mirrored in the plane of the axes."""
     places, angle = random_places(rng), float(rng.uniform(-3.0, 3.0))
     hands = {RIGHT_HAND: LEFT_HAND, LEFT_HAND: RIGHT_HAND}
-    other = replace(
-        pair,
-        pinion=replace(pair.pinion, hand=hands[pair.pinion.hand]),
-        wheel=replace(pair.wheel, hand=hands[pair.wheel.hand]),
-    )
+    gears: dict[str, Any] = {
+        name: replace(gear, hand=hands[gear.hand]) for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel))
+    }
+    other = replace(pair, **gears)
     ours = read(pair, angle, RIGHT, places)
     theirs = read(other, -angle, LEFT, mirrored(places, pair.wheel.angular_pitch))
     assert ours.gap[0] == pytest.approx(theirs.gap[0], abs=2e-8)  # two ways to the same least gap: QUICK_FALL

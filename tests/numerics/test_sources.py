@@ -38,6 +38,11 @@ def name_of(kernel: Kernel) -> str | None:
     return made.name
 
 
+def sources_in_name(kernel: Kernel) -> set[str]:
+    """Modules whose sources are in a kernel's name."""
+    return set(compiled._made_of(kernel._function, kernel._tuples)["sources"])
+
+
 def modules_reached(kernel: Kernel) -> set[str]:
     """Modules of all functions and kinds that a kernel's code names, directly or not: found from what runs."""
     kinds = set(kernel._tuples)
@@ -70,7 +75,7 @@ def modules_reached(kernel: Kernel) -> set[str]:
 
 @each_kernel
 def test_all_that_a_kernel_s_code_calls_is_among_its_sources(kernel: Kernel) -> None:
-    known = set(sources_of(kernel._function.__module__, *(kind.__module__ for kind in kernel._tuples)))
+    known = sources_in_name(kernel)
     reached = modules_reached(kernel)
     assert len(reached) >= (6 if kernel._tuples else 1)
     assert reached <= known
@@ -94,10 +99,7 @@ def test_all_that_any_kernel_of_the_package_calls_is_among_its_sources() -> None
     lacking = {
         name: sorted(lost)
         for name, kernel in every.items()
-        if (
-            lost := modules_reached(kernel)
-            - set(sources_of(kernel._function.__module__, *(kind.__module__ for kind in kernel._tuples)))
-        )
+        if (lost := modules_reached(kernel) - sources_in_name(kernel))
     }
     assert lacking == {}
 
