@@ -21,6 +21,7 @@ from tol3d.gearing.planetary.from_scene import planetary_system
 from tol3d.gearing.planetary.model.deviated import Deviated
 from tol3d.gearing.planetary.model.planetary_set import PlanetarySet
 from tol3d.gearing.planetary.system import PlanetarySystem
+from tol3d.numerics.programme import NO_ROOM
 
 Array = NDArray[np.float64]
 
@@ -257,6 +258,36 @@ def test_slopes_tell_the_plays(tmp_path: Path) -> None:
             both = [replace(deviated, **{field: plays + sense * step}) for sense in (-1.0, 1.0)]
             low, high = (by_programme(own, "stepped", each, "carrier")[0] for each in both)
             assert getattr(slopes, field)[0, place] == pytest.approx((high - low) / 2e-4, abs=1e-5)
+
+
+@pytest.mark.parametrize("thick", [0.002, -0.002])
+def test_teeth_too_thick_for_their_spaces_jam_wherever_planets_slide(thick: float, tmp_path: Path) -> None:
+    """One planet's gear in the ring has 2 um less or more room than none, by its thickness or by its pin."""
+    own = system_of(scene("stepped"), tmp_path).own
+    ring = own.meshes[1]
+    for by in ("thickness", "pin"):
+        deviated = Deviated.nothing(own, 1)
+        deviated.central_thickness[...] = deviated.planet_thickness[...] = -0.08
+        deviated.planet_slide[...] = 0.4
+        along = math.cos(ring.central.transverse_pressure_angle) / math.cos(math.radians(13.9))
+        if by == "thickness":
+            deviated.planet_thickness[0, 1, 2] += 0.16 + (2 * ring.clearance + thick) / along
+        else:  # outwards, which closes a ring
+            full = ring.clearance + 0.08 * along
+            closed = ring.working_pressure_angle
+            for _ in range(50):  # to the angle at which the involutes leave none
+                inv = (
+                    math.tan(ring.working_pressure_angle)
+                    - ring.working_pressure_angle
+                    + (full + thick) / ring.base_radii
+                )
+                closed -= (math.tan(closed) - closed - inv) / math.tan(closed) ** 2
+            deviated.pins[0, 2, 0] = ring.base_radii / math.cos(closed) - own.centre_distance
+        for method in (StackUp(own), Contact(own)):
+            if by == "pin" and isinstance(method, StackUp):
+                continue  # to first order pins of this size leave other gaps
+            free = method.free(deviated, np.zeros(1), "carrier", "sun")
+            assert (free.status[0] == NO_ROOM) == (thick > 0.0)
 
 
 def warnings_of(text: str, folder: Path) -> str:

@@ -223,7 +223,8 @@ class StripContact:
         readouts = np.eye(len(unknowns))
         for _ in range(MOST_STEPS):
             gears = placed_gears(own, self.made, deviated, turns, at)
-            gaps = self.engine.gaps(gears) + self._slides(deviated, gears)
+            gaps = self.engine.gaps(gears)
+            gaps = gaps + np.where(gaps.sum(axis=-1, keepdims=True) >= 0.0, self._slides(deviated, gears), 0.0)
             least, most = (push - at[of_springs] for push in own.spring_ends)
             lower = np.concatenate([-gaps[..., 0].ravel(), least])[None]
             upper = np.concatenate([gaps[..., 1].ravel(), most])[None]

@@ -113,8 +113,7 @@ class Contact:
         room = np.array([mesh.clearance for mesh in own.meshes]) + np.zeros((len(turns), own.planets, len(places)))
         cosines = np.array([mesh.central.along_action for mesh in own.meshes])
         thicker = deviated.central_thickness[:, None] + deviated.planet_thickness[:, places].swapaxes(1, 2)
-        slid = deviated.planet_slide[:, :, None] * (np.abs(own.planet_slides) / 2)
-        meshes = self._meshes
+        meshes, placed = self._meshes, self._placed(deviated, turns, directions)
         middle = meshes[:, 1] * deviated.planet_clocking[:, places].swapaxes(1, 2)
         middle = middle + meshes[:, 2] * meshes[:, 0] * deviated.central_clocking[:, None]
         return (
@@ -123,11 +122,31 @@ class Contact:
             directions,
             own.senses,
             own.centre_distance,
-            *self._placed(deviated, turns, directions),
+            *placed,
             np.ascontiguousarray(deviated.aside),
-            np.ascontiguousarray(room - thicker * cosines / 2 + slid),
+            np.ascontiguousarray(self._slid(deviated, placed, room - thicker * cosines / 2)),
             np.ascontiguousarray(middle),
         )
+
+    def _slid(self, deviated: Deviated, placed: tuple[Array, ...], room: Array) -> Array:
+        """Rooms (trials, planets, meshes) with those of planets that slide; teeth that fit no space never do.
+
+        Args:
+            deviated: of the trials.
+            placed: see `_placed`.
+            room: of each flank where centres lie in their places [mm].
+        """
+        if not deviated.planet_slide.any():
+            return room
+        own, (central, planet, pins) = self.own, placed
+        places = [own.gear_of(mesh) for mesh in own.meshes]
+        apart = pins[:, :, None] + planet[:, places].swapaxes(1, 2) - central[:, None] + deviated.aside[:, None]
+        base = np.array([mesh.sense * mesh.base_radii for mesh in own.meshes])
+        angles = np.arccos(np.minimum(np.abs(base) / np.hypot(apart[..., 0], apart[..., 1]), 1.0))
+        working = np.array([mesh.working_pressure_angle for mesh in own.meshes])
+        opened = room + base * ((np.tan(angles) - angles) - (np.tan(working) - working))
+        slid = deviated.planet_slide[:, :, None] * (np.abs(own.planet_slides) / 2)
+        return np.asarray(room + np.where(opened >= 0.0, slid, 0.0))
 
     def _placed(self, deviated: Deviated, turns: Array, directions: Array) -> tuple[Array, Array, Array]:
         """Centres of central gears (trials, meshes, 2), of planets' gears off pins (trials, gears, planets, 2), pins.

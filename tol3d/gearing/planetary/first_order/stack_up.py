@@ -52,7 +52,8 @@ class StackUp:
             thicker = deviated.central_thickness[:, place, None] + deviated.planet_thickness[:, gear]
             room = mesh.clearance - thicker * mesh.central.along_action / 2
             room = room + s * np.sin(angle) * apart[..., 0]
-            room = room + deviated.planet_slide * (abs(own.planet_slides[place]) / 2)
+            slid = deviated.planet_slide * (abs(own.planet_slides[place]) / 2)
+            room = room + np.where(room >= 0.0, slid, 0.0)  # teeth too thick for their spaces are so at any height
             moved = s * np.cos(angle) * apart[..., 1]
             moved = moved - mesh.planet.base_radius * deviated.planet_clocking[:, gear]
             moved = moved - s * mesh.central.base_radius * deviated.central_clocking[:, place, None]
