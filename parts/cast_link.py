@@ -135,12 +135,12 @@ def _widest(end: End, along: Array, length: float) -> float:
     low, high = end.room
     rise = float(along @ np.array(end.inwards))
     level = math.sqrt(max(0.0, 1.0 - rise**2))
-    most = min(end.diameter / 2, (high - low) / 2 / level if level > 0.0 else math.inf)
+    most: float = min(end.diameter / 2, (high - low) / 2 / level if level > 0.0 else math.inf)
     if rise >= 0.0:
         return most
     middle = (low + high) / 2
     ends_before = (middle + length * rise) / level if level > 0.0 else -math.inf
-    return min(most, max(middle * level + end.diameter / 2 * rise, ends_before))
+    return min(most, float(max(middle * level + end.diameter / 2 * rise, ends_before)))
 
 
 def _reach(end: End, along: Array) -> float:
