@@ -16,9 +16,9 @@ from tol3d.parts.link_ends import RELIEF, Cylinder, Distal, Proximal
 from tol3d.parts.named_solid import NamedSolid
 
 LINKS: Any = {
-    name: part.builder.shape
+    name: builder.shape
     for name, part in load_scene(SCENES / "robot_arm.yaml").parts.items()
-    if getattr(part, "builder", None) is not None
+    if (builder := getattr(part, "builder", None)) is not None
 }
 FACES = {"seat": "seat", "foot": "seat", "pilot": "pilot", "bore": "bore", "flange": "flange"}
 """Faces of solids by the features of the scene that lie on them."""

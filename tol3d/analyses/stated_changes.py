@@ -66,7 +66,7 @@ def change_of(
     try:
         if own_class := class_of(value):
             return Change(name, limits=class_limits(own_class, sizes.get(name, {})), of_class=own_class)
-        if sizes_written(value) is not None:
+        if sizes_written(value) is not None and (name in nominals or not RANGE.fullmatch(value)):
             law = response.drawn_by(contributor.name).distribution
             return Change(name, limits=deviations_of(law, value, nominals.get(name)))
         pair = limits_written(value)

@@ -199,7 +199,7 @@ def _begun(plotter: pv.Plotter, motion: Motion, place: int, label: str) -> Mappi
     shot = _chosen(plotter, motion, place)
     set_background(plotter)
     found = {}
-    for body in motion.world.bodies:
+    for body in motion.world.drawn:
         if shot.shows([body.name]):
             before = set(plotter.renderer.actors)
             add_body(plotter, body)
@@ -225,7 +225,7 @@ def _move(
 ) -> None:
     """Put the bodies of a shot where they stand in a frame, and what is marked there."""
     shot, frame = _chosen(plotter, motion, place), motion.frames[number]
-    for body in motion.world.bodies:
+    for body in motion.world.drawn:
         if body.name in actors and body.name in frame.poses:
             moved = frame.poses[body.name] @ np.linalg.inv(body.world_from_part)
             for actor in actors[body.name]:

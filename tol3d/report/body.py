@@ -176,6 +176,11 @@ class World:
     enlarged: float = 1.0
     within: Mapping[str, tuple[Body, ...]] = field(default_factory=dict)
 
+    @property
+    def drawn(self) -> tuple[Body, ...]:
+        """Every body that pictures show."""
+        return (*self.bodies, *(body for bodies in self.within.values() for body in bodies))
+
 
 def built_body(
     name: str, shape: BuiltShape, world_from_part: NDArray[np.float64], colour: str, *, deflection: float

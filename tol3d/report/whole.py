@@ -140,7 +140,7 @@ def draw_whole(
         marks: points that are named besides those of the world, (3,) [mm].
     """
     set_background(plotter)
-    for body in (*world.bodies, *(own for bodies in world.within.values() for own in bodies)):
+    for body in world.drawn:
         add_body(plotter, body)
     if any(body.opacity < 1.0 for body in world.bodies):  # else faces hide each other in the order of drawing
         plotter.renderer.SetUseDepthPeeling(True)

@@ -169,6 +169,7 @@ class ViewModel:
                 continue
             pieces = [(body.name, piece) for body in world.bodies for piece in body.pieces]
             pieces += [(name, body) for name, bodies in world.within.items() for body in bodies]
+            wholes = [body for body in world.drawn for _ in body.pieces]
             alike = {id(body): "" for bodies in world.within.values() for body in bodies}  # many are
             placed = [self._place(piece, alike.get(id(piece), piece.name)) for _, piece in pieces]
             shown, parts = shown or world, parts or tuple(_part(name, piece) for name, piece in pieces)
@@ -179,7 +180,7 @@ class ViewModel:
             factor = asked if world.magnify is None else world.magnify
             read = values or {}
             state = State(asked, factor, words, meshes, poses, names, features, _lines(world), read, world.enlarged)
-            motion = self._motion(display, [body for body, _ in pieces], read)
+            motion = self._motion(display, wholes, read)
             states.append(replace(state, errors=tuple(errors_of(world, read)), motion=motion))
             if factor < asked:
                 break

@@ -14,6 +14,7 @@ import numpy as np
 
 from tol3d.assembly.presenting.shown_assembly import Placed, moved_from, placed_each, seen_whole
 from tol3d.errors import RunError
+from tol3d.gearing.machine.presenting.trains_in_joints import TrainInJoint
 from tol3d.gearing.machine.system import MachineSystem
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import World
@@ -54,6 +55,7 @@ class Arm:
         magnify: factor of its deviations.
         world: the first of its display, in its first pose.
         placed: its parts there.
+        trains: that turn its joints.
     """
 
     system: MachineSystem
@@ -61,6 +63,7 @@ class Arm:
     magnify: float
     world: World
     placed: Placed
+    trains: tuple[TrainInJoint, ...] = ()
 
     @cached_property
     def _columns(self) -> Sequence[int]:
@@ -149,6 +152,10 @@ class Arm:
                 words = f"{leg.start}: {self.play_words}" if k else leg.start
                 yield words, "" if k else leg.start, self.swung(leg.start, u)
 
+    def poses_of_trains(self, placed: Placed) -> Mapping[str, Array]:
+        """Poses (4, 4) of the bodies of its trains, by name, as its parts lie."""
+        return {body.name: body.world_from_part for train in self.trains for body in train.placed(placed)}
+
     @property
     def play_words(self) -> str:
         """The factor of the play, in words."""
@@ -179,7 +186,7 @@ def arm_motion(arm: Arm, frames: int | None) -> Motion:
     steps.append((last, last, arm.rests(last)))
     every = arm.at([turns for _, _, turns in steps])
     shown = tuple(
-        Frame(words, moved_from(arm.placed, own, arm.world), stop=stop)
+        Frame(words, {**moved_from(arm.placed, own, arm.world), **arm.poses_of_trains(own)}, stop=stop)
         for (words, stop, _), own in zip(steps, every, strict=True)
     )
     notes = (f"{arm.play_words}, both ends of it in every pose",) if arm.factor else ("its joints have no play",)

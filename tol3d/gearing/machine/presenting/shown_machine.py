@@ -123,7 +123,8 @@ class ShownMachine:
         if name == POSES:
             assert self.trials is not None
             first = next(iter(self.poses.values()))
-            return arm_motion(Arm(self.system, self.trials, self.magnify, self.worlds[0], first), frames)
+            arm = Arm(self.system, self.trials, self.magnify, self.worlds[0], first, self.trains)
+            return arm_motion(arm, frames)
         return self.gears.motion(name, frames)
 
     def view(self, close_up: str | None) -> View:
