@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from tol3d.apps.drafting.parts import DraftedPart
 from tol3d.cad.step import FoundFeature, Tab
-from tol3d.cad.step.machined import SAME, THINNEST
 
 Facing = Sequence[tuple[FoundFeature, FoundFeature, float]]
 """Flat faces of two parts that look at each other, of the first and of the second, with their distance [mm]."""
@@ -84,7 +83,6 @@ def _tabs(slotted: DraftedPart, holder: DraftedPart, facing: Facing) -> Iterator
     """Tabs midway between two walls and with play; flat faces of the slotted part and of the other."""
     for tab in holder.features.part.machined.tabs if facing else ():
         first, second = ([(own, gap) for own, face, gap in facing if face.faces == side.faces] for side in tab.walls)
-        between = [(a, b, gap) for a, gap in first for b, other in second if abs(gap - other) < SAME < gap]
+        between = [(a, b, gap) for a, gap in first for b, other in second if tab.plays_between(gap, other)]
         for wall, opposite, gap in between[:1]:
-            if tab.width > THINNEST * (width := tab.width + 2 * gap):
-                yield InSlot(holder, slotted, tab, (wall, opposite), width)
+            yield InSlot(holder, slotted, tab, (wall, opposite), tab.width + 2 * gap)

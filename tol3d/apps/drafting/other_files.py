@@ -6,12 +6,12 @@ from typing import Final
 
 from tol3d.cad.step import StepError, StepFile, read_step, shown
 from tol3d.cad.step.gate import cycle
-from tol3d.files import LARGEST_FILE, FileContent, Files, UnreadableFileError, contained, read_contained
+from tol3d.files import LARGEST_FILE, FileContent, UnreadableFileError, contained, read_contained
 
 MOST_FILES: Final = 100
 
 
-def with_other_files(contents: Sequence[FileContent]) -> tuple[Files, dict[str, str]]:
+def with_other_files(contents: Sequence[FileContent]) -> tuple[dict[str, FileContent], dict[str, str]]:
     """Files, then those in which parts of them stand, each once; and those that are missing, with the reason.
 
     Both by the names that a scene gives them: from the folder of the first file on, with / between folders.

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Final
@@ -26,8 +26,7 @@ from tol3d.cad.step import (
     shown,
     surfaces_of,
 )
-from tol3d.cad.step.structure import UNNAMED
-from tol3d.files import Files
+from tol3d.files import FileContent
 from tol3d.numerics.arrays import Array
 
 STILL: Final = 1e-12
@@ -119,8 +118,8 @@ class ReadText:
     meanings: Meanings
 
 
-def read_files(contents: Files) -> tuple[ReadText, ...]:
-    """Files as they are read, text and geometry.
+def read_files(contents: Mapping[str, FileContent]) -> tuple[ReadText, ...]:
+    """Files as they are read, text and geometry, by the names that the scene gives them.
 
     Raises:
         StepError: one cannot be read.
@@ -167,7 +166,7 @@ def standing(files: Sequence[ReadText]) -> Iterator[Standing]:
             own_pose = pose if single else pose @ posed(use)
             yield Standing(read_text, use, own_pose, top and not single, called if single else "")
         waiting[:0] = [
-            (by_name[name], pose @ posed(own.use), "" if own.name == UNNAMED else own.name, False)
+            (by_name[name], pose @ posed(own.use), own.name, False)
             for own in read_text.file.elsewhere
             if (name := name_of(own.file, read_text.name)) in by_name
         ]

@@ -146,6 +146,10 @@ class Tab:
         """The feature with its numbers [mm]."""
         return f"tab {self.width:.6g} wide, {self.length:.6g} long, {self.height:.6g} high"
 
+    def plays_between(self, gap: float, other: float) -> bool:
+        """True if it is midway between walls at these distances from its own [mm] that locate it with play."""
+        return abs(gap - other) < SAME < gap and self.width > THINNEST * (self.width + gap + other)
+
 
 @dataclass(frozen=True)
 class HolePattern:

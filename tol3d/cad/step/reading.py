@@ -109,7 +109,7 @@ class PartElsewhere:
     Args:
         use: here.
         file: as this file states it.
-        name: of the product here.
+        name: of the product here; "" if this file says none.
     """
 
     use: Use
@@ -292,8 +292,9 @@ def read_step(content: FileContent) -> StepFile:
         text = read_step_text(content.content, content.path.name)
         structure = text.structure
         elsewhere = tuple(
-            PartElsewhere(_used(leaf), structure.elsewhere[leaf.product], structure.products[leaf.product].name)
+            PartElsewhere(_used(leaf), structure.elsewhere[leaf.product], "" if name == UNNAMED else name)
             for leaf in structure.leaves_elsewhere
+            for name in [structure.products[leaf.product].name]
         )
         if elsewhere and not structure.leaves:
             return _kept(ReadFile((), (), layers_of(text.file), elsewhere))
