@@ -110,7 +110,7 @@ def encoded(motion: Motion, drawn: Iterator[Image.Image], suffix: str) -> bytes:
     if suffix == ".gif":
         marks = [*motion.colours.values(), EDGE_COLOUR, "#FFFFFF"]
         if not motion.colours:  # else parts fill the picture
-            marks += [GAP_COLOUR, *(shade for own in motion.world.bodies for shade in _shades(own.colour))]
+            marks += [GAP_COLOUR, *(shade for own in motion.world.drawn for shade in _shades(own.colour))]
         kept = list(_few_colours(kept, dict.fromkeys(marks)))
     played = motion.played
     ends = (0, len(kept) - 1) if motion.back else ()
