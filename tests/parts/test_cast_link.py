@@ -15,11 +15,8 @@ from tol3d.parts.cast_link import cast_link
 from tol3d.parts.link_ends import RELIEF, Cylinder, Distal, Proximal
 from tol3d.parts.named_solid import NamedSolid
 
-LINKS: Any = {
-    name: builder.shape
-    for name, part in load_scene(SCENES / "robot_arm.yaml").parts.items()
-    if (builder := getattr(part, "builder", None)) is not None
-}
+PARTS: Any = load_scene(SCENES / "robot_arm.yaml").parts
+LINKS: Any = {name: part.builder.shape for name, part in PARTS.items() if getattr(part, "builder", None) is not None}
 FACES = {"seat": "seat", "foot": "seat", "pilot": "pilot", "bore": "bore", "flange": "flange"}
 """Faces of solids by the features of the scene that lie on them."""
 
@@ -61,7 +58,7 @@ def along(face: cq.Face) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any], fl
 
 @pytest.mark.parametrize("name", LINKS)
 def test_the_faces_of_the_arm_s_links_lie_where_its_features_are_drawn(name: str) -> None:
-    part: Any = load_scene(SCENES / "robot_arm.yaml").parts[name]
+    part = PARTS[name]
     made = cast_link(LINKS[name].proximal, LINKS[name].distal, LINKS[name].wall, LINKS[name].body)
     assert made.solid.isValid()
     drawn = {feature: own for feature, own in part.features.items() if feature in FACES}
