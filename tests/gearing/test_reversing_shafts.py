@@ -16,13 +16,15 @@ import pytest
 from gear_trials import drawn_trials, form_of, gear_columns, measure_of, model_of_scene
 from oracles.reversing_shafts import Bearings, Stage
 from oracles.screw_flanks import ScrewGear
+from places import SCENES
+from scene_texts import written
 
 from tol3d.errors import GeometryError, SceneError
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.methods.analytic import AnalyticMethod, analytic_values
 from tol3d.gearing.methods.geometric import FclMethod, GeometricMethod
-from tol3d.gearing.model import Measure, Model
+from tol3d.gearing.model import AxisOffset, AxisTilt, Measure, Model
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.system import GearSystem
 from tol3d.gears import InternalGear, InternalPair, SpurGear, SpurPair
@@ -406,12 +408,11 @@ def gaps(model: Model, contributor: str, reverse: bool) -> dict[str, float]:
         normal = np.array([math.sin(alpha), -side * math.cos(alpha), side * hand * math.tan(lean)]) * math.cos(lean)
         total = 0.0
         for effect in own.effect.singles:
-            part = getattr(effect, "part", "")
-            if part not in (mesh.driver, mesh.driven):
+            if not isinstance(effect, AxisOffset | AxisTilt) or effect.part not in (mesh.driver, mesh.driven):
                 continue
-            driver = part == mesh.driver
+            driver = effect.part == mesh.driver
             turn = mesh.azimuth if driver else 0.0
-            if hasattr(effect, "direction"):
+            if isinstance(effect, AxisOffset):
                 x, y, z = effect.factor * np.array(effect.direction)
                 moved = np.array([x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn), z])
             else:
@@ -507,6 +508,33 @@ def test_load_paths_in_parallel_meet_in_the_tighter_one(left: float, right: floa
         assert own == pytest.approx(wanted, abs=1e-10)
 
 
+def test_single_flanks_deviate_where_either_load_puts_them(tmp_path: Path) -> None:
+    """Both methods, tooth by tooth; a reversal opens eight times as much as they differ in any trial."""
+    flanks = "".join(
+        f"  {gear} pitch: {{kind: pitch_deviation, of: {gear}, flanks: each, limits: {{iso_class: 7}}, "
+        "law: {kind: random_walk, fill: [0.71, 1]}}\n"
+        f"  {gear} slope: {{kind: profile_slope, of: {gear}, flanks: each, each: tooth, limits: {{size: 9 um}}, "
+        "law: {kind: normal, cpk: 1}}\n"
+        for gear in "AB"
+    )
+    parts = SHAFTS[: SHAFTS.index("  C:")] + SHAFTS[SHAFTS.index("  one:") : SHAFTS.index("  three:")]
+    parts = parts.replace(", C: {at: 30 mm}", "") + SHAFTS[SHAFTS.index("  low:") :]
+    plays = clearance("low play", "low", 0.03) + clearance("high play", "high", 0.018) + thinner("A", 0.05)
+    moves = "  m: {kind: mesh, driver: A, driven: B, centre_distance: 54.7 mm, azimuth: 20 deg}\n"
+    measures = "\n  free: {kind: angular_backlash, of: m}\n"
+    each = []
+    for text in (plays, plays.replace("reversing", "tooth_force")):
+        model = model_of_scene(scene(tmp_path, parts, text + flanks, moves, measures))
+        columns = gear_columns(model, exact_engine(model), drawn_trials(model, 5, 0, 60))
+        assert (columns["status"] == "ok").all()
+        arm_of = model.meshes[0].pair.wheel.section_arm / ARCMIN
+        each.append([columns[f"{method}:free"] * arm_of for method in ("geometric", "analytic")])
+    (exact, analytic), (stays, _) = each
+    assert np.ptp(exact - stays) < 4e-3 < 15e-3 < (exact - stays).min()
+    assert np.abs(exact - analytic).max() < 0.3e-3
+    assert np.sqrt(np.mean((exact - analytic) ** 2)) < 0.05e-3
+
+
 # what is refused ------------------------------------------------------------------------------------------------------
 
 
@@ -546,6 +574,16 @@ def test_a_bearing_whose_load_is_not_known_is_refused(
     place = r"tolerances\.play\.direction: expected apart, random, "
     with pytest.raises(SceneError, match=place + ".*" + re.escape(words)):
         model_of_scene(scene(tmp_path, parts, clearance("play", of, 0.02, mesh=mesh), moves, measure))
+
+
+def test_a_shaft_with_a_part_of_a_planetary_set_is_refused(tmp_path: Path) -> None:
+    text = (SCENES / "reducer_3k_train.yaml").read_text("utf-8")
+    bearings = "".join(f"  {name}: {{kind: bearing, shaft: countershaft, at: {at} mm}}\n" for name, at in
+                       (("low", -5), ("high", 30)))  # fmt: skip
+    text = text.replace("\nparts:\n", f"\nparts:\n{bearings}", 1)
+    text = text.replace("\ntolerances:\n", f"\ntolerances:\n{clearance('play', 'low', 0.01, mesh='spur stage')}", 1)
+    with pytest.raises(SceneError, match=r"play: expected a shaft without parts of 'reducer', got one that carries"):
+        model_of_scene(written(text, tmp_path))
 
 
 def test_bevel_gears_cross_the_clearances_of_their_own(tmp_path: Path) -> None:

@@ -102,6 +102,33 @@ measures:{READ}
         np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_shafts_cross_their_clearances_in_bores_as_without_a_housing(method: str, tmp_path: Path) -> None:
+    """Both bearings of the wheel's shaft, with bores that stand where they should."""
+    bearings = "".join(
+        f"\n  {name}: {{kind: bearing, shaft: last shaft, at: {at} mm}}" for name, at in (("near", 2), ("far", 62))
+    )
+    play = "direction: reversing, distribution: {kind: uniform, lower: 0 um, upper: 40 um}"
+    plays = "".join(
+        f"\n  {name} play: {{kind: bearing_clearance, of: {name}, mesh: stage, {play}}}" for name in ("near", "far")
+    )
+    alone = f"""scene: plain
+parts:{SHAFTS}{gears()}{bearings}
+tolerances:{plays}{THIN}
+moves:
+  stage: {{kind: mesh, driver: pinion, driven: wheel, centre_distance: 53 mm, azimuth: 37 deg}}
+measures:{READ}
+"""
+    rng = np.random.default_rng(7)
+    drawn = {f"{name} play": rng.uniform(0.0, 0.04, 20) for name in ("near", "far")} | thin(20)
+    turns = rng.random(20)
+    in_bores = gearbox_of(housed(plays + THIN, SHAFTS + gears() + bearings), tmp_path)
+    found, expected = (values(own, method, drawn, turns) for own in (in_bores, system_of(alone, tmp_path)))
+    assert np.ptp(expected["free turn"]) > 4 * np.ptp(expected["backlash"]) / pair_of(in_bores).wheel.base_radius
+    for name in ("backlash", "free turn"):
+        np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=1e-9)
+
+
 @pytest.mark.parametrize("hands", [("right", "left"), ("left", "right")])
 @pytest.mark.parametrize("backward", ["", "4 mm", "6 mm"])
 def test_methods_differ_by_what_is_of_second_order(hands: tuple[str, ...], backward: str, tmp_path: Path) -> None:

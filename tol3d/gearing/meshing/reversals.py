@@ -31,13 +31,13 @@ def to_reversal(
         turning: names of the gears whose free turn is wanted.
     """
     other = replace(reading, flank="back")
-    turns = {}
     if mesh.driven in turning:
         turn = _known(engine.read(turned, mesh, other, drive.driver_angle)) - _known(drive)
-        turns["driven_turn"] = mesh.driven_flank * turn
+        drive = replace(drive, driven_turn=mesh.driven_flank * turn)
     if mesh.driver in turning:
-        turns["driver_turn"] = mesh.working_flank * _driver_turn(engine, turned, mesh, other, drive)
-    return replace(drive, **turns)
+        turn = _driver_turn(engine, turned, mesh, other, drive)
+        drive = replace(drive, driver_turn=mesh.working_flank * turn)
+    return drive
 
 
 def _known(reading: MeshReading) -> Array:

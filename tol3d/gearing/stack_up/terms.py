@@ -96,23 +96,25 @@ def of_both_loads(drive: Contribution, coast: Contribution, mesh: NominalMesh[Ge
     itself, i + w c from the working one and i - w c from the other one, i in the plane of the axes and c across it, w
     the driver's working flank.
     """
-    found, side, own = [], mesh.mesh.driven_flank, mesh.mesh.working_flank
-    if drive.opening and coast.opening and drive.opening.tilts and coast.opening.tilts:
-        (first, first_across), (last, last_across) = (np.array(term.opening.tilts) for term in (drive, coast))
+    found, side, own = list[Contribution](), mesh.mesh.driven_flank, mesh.mesh.working_flank
+    tilted, leant = drive.opening, coast.opening
+    if tilted and leant and tilted.tilts and leant.tilts:
+        (first, first_across), (last, last_across) = np.array(tilted.tilts), np.array(leant.tilts)
         working, other = first + own * first_across, last - own * last_across
         in_plane, across = (working + other) / 2, own * (working - other) / 2
         largest = float(np.abs([in_plane, across]).max())
         tilts = tuple(in_plane.tolist()), tuple(across.tolist())
-        found.append(Contribution(replace(drive.opening, coefficient=largest, tilts=tilts)))
+        found.append(Contribution(replace(tilted, coefficient=largest, tilts=tilts)))
         drive, coast = replace(drive, opening=None), replace(coast, opening=None)
     contributor = next((term.contributor for term in (drive.opening, drive.aside) if term), None)
     if contributor is None:
-        return (*found, NOTHING)
-    opened, opens = (own.opening.coefficient if own.opening else 0.0 for own in (drive, coast))
-    stood, stands = (own.aside.coefficient if own.aside else 0.0 for own in (drive, coast))
+        return tuple(found)
+    opened, opens = (load.opening.coefficient if load.opening else 0.0 for load in (drive, coast))
+    stood, stands = (load.aside.coefficient if load.aside else 0.0 for load in (drive, coast))
     opening = Term(contributor, (opened + opens) / 2 + side * (stands - stood))
     aside = Term(contributor, (stood + stands) / 2 + side * (opens - opened) / 4)
-    return *found, replace(drive, opening=opening, aside=aside, by_shifts=opening if drive.by_shifts else None)
+    found.append(replace(drive, opening=opening, aside=aside, by_shifts=opening if drive.by_shifts else None))
+    return tuple(found)
 
 
 @contributes(AxesOffset)
