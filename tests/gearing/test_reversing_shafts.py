@@ -24,7 +24,7 @@ from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.methods.analytic import AnalyticMethod, analytic_values
 from tol3d.gearing.methods.geometric import FclMethod, GeometricMethod
-from tol3d.gearing.model import AxisOffset, AxisTilt, Measure, Model
+from tol3d.gearing.model import AxisOffset, AxisTilt, Measure, Model, Positions
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.system import GearSystem
 from tol3d.gears import InternalGear, InternalPair, SpurGear, SpurPair
@@ -373,6 +373,39 @@ def test_the_witness_finds_the_same_free_turn(tmp_path: Path) -> None:
     for measure in measures:
         bound = sum(witness.bounds(measure)) / measure.per_internal
         assert abs(float(found[measure.name][0, 0] - exact[measure.name][0, 0])) < bound
+
+
+def test_one_bearing_lets_the_whole_shaft_of_a_spur_gear_cross(tmp_path: Path) -> None:
+    """As the gear's own clearance does, wherever the bearing sits; the bearing's contact angle slides nothing spur."""
+    bearing = "\n  only: {kind: bearing, shaft: B, at: 80 mm, contact_angle: 25 deg}"
+    parts = "\n".join(
+        f"  {gear}: {{kind: spur_gear, teeth: {z}, module: 2 mm, face_width: 20 mm}}"
+        for gear, z in (("A", 31), ("B", 60))
+    )
+    moves = (
+        "  m: {kind: mesh, driver: A, driven: B, centre_distance: 91.2 mm}\n  t: {kind: train, driven: A, output: B}"
+    )
+    whole = model_of_scene(scene(tmp_path, parts + bearing, clearance("play", "only", 0.02), moves))
+    own = model_of_scene(scene(tmp_path, parts, clearance("play", "B", 0.02), moves))
+    for name in ("free", "lost"):
+        assert values(whole, name) == pytest.approx(values(own, name), abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", [1, 4])
+def test_over_a_turn_both_methods_follow_the_contact_lines(seed: int, tmp_path: Path) -> None:
+    """A leaning helical shaft: the free turn varies from position to position, by both methods alike."""
+    model = stage_scene(random_stage(np.random.default_rng(seed), ring=seed == 4), tmp_path, 1, seed)
+    (pair,) = (mesh.pair for mesh in model.meshes)
+    at = [replace(measure_of(model, "free"), positions=Positions("turn", 1, 48), take="curve")]
+    trials = drawn_trials(model, 1, 0, 1)
+    exact, analytic = (
+        method.answers(trials, at).values["free"][0] * pair.wheel.section_arm
+        for method in (GeometricMethod(model, exact_engine(model)), AnalyticMethod(model))
+    )
+    assert exact.shape == (49,)
+    assert np.ptp(exact) > 0.05e-3
+    assert np.abs(exact - analytic).max() < 0.2e-3
+    assert np.sqrt(np.mean((exact - analytic) ** 2)) < 0.2 * np.std(exact) + 0.02e-3
 
 
 # trains ---------------------------------------------------------------------------------------------------------------

@@ -30,7 +30,7 @@ class Effect(ABC):
 
     @property
     def reversed(self) -> "Effect":
-        """Effect while the load is on the other flanks; the same but of what lies where the load pushes it."""
+        """Effect while the other flanks carry the load; itself if the load moves nothing."""
         return self
 
     @abstractmethod

@@ -59,7 +59,7 @@ class Meshing:
         engine: measures gaps.
         model, mesh, build: the builds; one row per position.
         reading: place on the face, and teeth, at which flanks are evaluated.
-        turned: builds in which the load is on the other flanks, if the shafts lie elsewhere then.
+        reversed_build: builds in which the load is on the other flanks, if shafts lie elsewhere then.
     """
 
     engine: Engine
@@ -67,7 +67,7 @@ class Meshing:
     mesh: Mesh
     build: Build
     reading: Reading
-    turned: Build | None = None
+    reversed_build: Build | None = None
 
     @property
     def flank(self) -> Flank:
@@ -96,13 +96,15 @@ class Meshing:
 
     def rows(self, rows: NDArray[np.intp]) -> "Meshing":
         """The same for some builds."""
-        turned = None if self.turned is None else self.turned.rows(rows)
-        return replace(self, build=self.build.rows(rows), turned=turned)
+        other = None if self.reversed_build is None else self.reversed_build.rows(rows)
+        return replace(self, build=self.build.rows(rows), reversed_build=other)
 
     @property
     def reversed(self) -> "Meshing | None":
         """The same while the other flanks carry the load; None if no shaft lies elsewhere then."""
-        return None if self.turned is None else replace(self, build=self.turned, turned=None)
+        if self.reversed_build is None:
+            return None
+        return replace(self, build=self.reversed_build, reversed_build=None)
 
     def gaps_of(self, flank: Flank, angles: tuple[Array, Array], section: bool, wanted: NDArray[np.bool_]) -> Gaps:
         """Gaps of one flank side of the driver, for the builds (rows,) that are wanted."""

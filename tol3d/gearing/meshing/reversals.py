@@ -19,23 +19,23 @@ LAST_STEP: Final = 1e-9  # mm
 
 
 def to_reversal(
-    engine: ReadingEngine, turned: Build, mesh: Mesh, reading: Reading, drive: MeshReading, turning: frozenset[str]
+    engine: ReadingEngine, build: Build, mesh: Mesh, reading: Reading, drive: MeshReading, turning: frozenset[str]
 ) -> MeshReading:
     """A mesh with the free turns from its rest to that on its other flanks under the load on those.
 
     Args:
         engine: reads meshes.
-        turned: builds with the load on the other flanks, one per row.
+        build: virtual builds with the load on the other flanks, one per row.
         mesh, reading: which gears, and where on them.
         drive: the mesh read under the load on its working flanks.
         turning: names of the gears whose free turn is wanted.
     """
     other = replace(reading, flank="back")
     if mesh.driven in turning:
-        turn = _known(engine.read(turned, mesh, other, drive.driver_angle)) - _known(drive)
+        turn = _known(engine.read(build, mesh, other, drive.driver_angle)) - _known(drive)
         drive = replace(drive, driven_turn=mesh.driven_flank * turn)
     if mesh.driver in turning:
-        turn = _driver_turn(engine, turned, mesh, other, drive)
+        turn = _driver_turn(engine, build, mesh, other, drive)
         drive = replace(drive, driver_turn=mesh.working_flank * turn)
     return drive
 
@@ -45,11 +45,11 @@ def _known(reading: MeshReading) -> Array:
     return np.where(reading.status <= INTERFERES, reading.driven_angle, np.nan)
 
 
-def _driver_turn(engine: ReadingEngine, turned: Build, mesh: Mesh, other: Reading, drive: MeshReading) -> Array:
+def _driver_turn(engine: ReadingEngine, build: Build, mesh: Mesh, other: Reading, drive: MeshReading) -> Array:
     """Turn of the driver [rad], (rows,), until its other flanks touch those of the driven gear, held at its rest."""
     held, turn = _known(drive), np.zeros(len(drive.driver_angle))
     for _ in range(DRIVER_STEPS):
-        step = (held - _known(engine.read(turned, mesh, other, drive.driver_angle + turn))) / float(mesh.rate)
+        step = (held - _known(engine.read(build, mesh, other, drive.driver_angle + turn))) / float(mesh.rate)
         turn += np.nan_to_num(step)
         if not np.any(np.abs(step) * mesh.pair.pinion.base_radius > LAST_STEP):
             break

@@ -125,7 +125,7 @@ class Seats:
         build: one row a trial.
         seats: by mesh name, positions and reading; rows are trials x positions, positions fastest.
         meshings: the builds that were seated there.
-        turned: the builds with the load on the other flanks, if a reading ends there.
+        reversed_build: the builds with the load on the other flanks, if a reading ends there.
     """
 
     model: Model
@@ -133,21 +133,21 @@ class Seats:
     build: Build
     seats: Mapping[SeatKey, MeshSeat] = field(default_factory=dict)
     meshings: Mapping[SeatKey, Meshing] = field(default_factory=dict)
-    turned: Build | None = None
+    reversed_build: Build | None = None
 
 
 def seated(model: Model, engine: Engine, trials: Trials, measures: Sequence[Measure] | None = None) -> Seats:
     """Build the trials and seat every mesh at every set of positions that some measure reads; all of the model's."""
     made, keys = build(model, trials.deviations), all_seat_keys(model, model.measures if measures is None else measures)
-    turned = build(model.reversed, trials.deviations) if any(key[2].reversing for key in keys) else None
+    loaded = build(model.reversed, trials.deviations) if any(key[2].reversing for key in keys) else None
     seats: dict[SeatKey, MeshSeat] = {}
     meshings: dict[SeatKey, Meshing] = {}
     for key in keys:
         angles = driver_angles(key, trials)
-        other = turned.repeated(angles.shape[1]) if turned and key[2].reversing else None
+        other = loaded.repeated(angles.shape[1]) if loaded and key[2].reversing else None
         meshings[key] = Meshing(engine, model, model.mesh(key[0]), made.repeated(angles.shape[1]), key[2], other)
         seats[key] = meshings[key].seat(angles.ravel())
-    return Seats(model, trials, made, seats, meshings, turned)
+    return Seats(model, trials, made, seats, meshings, loaded)
 
 
 def play_of(measure: Measure, seats: Seats) -> Play:

@@ -71,7 +71,8 @@ class GeometricMethod:
     def _by_readings(self, engine: ReadingEngine, trials: Trials, measures: Sequence[Measure]) -> Answers:
         wanted = self._backlashes_by_key(measures)
         made = engine.build(trials.deviations)
-        turned = engine.reversed_build(trials.deviations) if any(key[2].reversing for key in wanted) else made
+        reverses = any(key[2].reversing for key in wanted)
+        builds = (made, engine.reversed_build(trials.deviations) if reverses else made)
         readings: dict[SeatKey, MeshReading] = {}
         for key in filter(partial(_only_rests, wanted), wanted):
             if key not in readings:
@@ -80,7 +81,7 @@ class GeometricMethod:
                 readings |= {(*key[:2], side): own for side, own in zip(sides, both, strict=True)}
         for key, backlashes in wanted.items():
             if not _only_rests(wanted, key):
-                readings[key] = self._read(engine, (made, turned), trials, key, backlashes)
+                readings[key] = self._read(engine, builds, trials, key, backlashes)
         contacts: Details = {}
         for key in sorted(wanted, key=_side):
             mesh, own = self.model.mesh(key[0]), readings[key]
@@ -104,11 +105,12 @@ class GeometricMethod:
     ) -> MeshReading:
         """A mesh where some backlashes are read; the second builds have the load on the other flanks."""
         mesh, angles = self.model.mesh(key[0]), driver_angles(key, trials)
-        made, turned = (own.repeated(angles.shape[1]) for own in builds)
+        made = builds[0].repeated(angles.shape[1])
         turning = frozenset(gear for backlash in backlashes if (gear := turning_gear(backlash, mesh)))
         if not key[2].reversing:
             return engine.read(made, mesh, key[2], angles.ravel(), turning)
-        return to_reversal(engine, turned, mesh, key[2], engine.read(made, mesh, key[2], angles.ravel()), turning)
+        drive, loaded = engine.read(made, mesh, key[2], angles.ravel()), builds[1].repeated(angles.shape[1])
+        return to_reversal(engine, loaded, mesh, key[2], drive, turning)
 
     def _backlashes_by_key(self, measures: Sequence[Measure]) -> dict[SeatKey, list[Backlash]]:
         """Every way of reading a mesh, with the backlashes that are wanted there."""

@@ -57,10 +57,10 @@ def _sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measur
     seats, count = seated(alone, engine, trials), measure.positions.in_a_trial
     rows = np.repeat(np.arange(len(trials)), count)
     moves = build_rates(model, seats.build, trials.deviations).rows(rows)
-    turned = moves
-    if seats.turned:
-        turned = build_rates(model.reversed, seats.turned, trials.deviations).rows(rows)
-    rates = _free_rates(alone, measure, (moves, turned), seats).reshape(len(trials), count, -1)
+    others = moves
+    if seats.reversed_build:
+        others = build_rates(model.reversed, seats.reversed_build, trials.deviations).rows(rows)
+    rates = _free_rates(alone, measure, (moves, others), seats).reshape(len(trials), count, -1)
     rates = moved_rates(measure.kind, play_of(measure, seats).free(), rates)
     return taken_rates(measure, geometric_values(measure, seats), rates)
 
