@@ -38,7 +38,8 @@ from tol3d.statistics.distributions import Distribution
 SINGLE = [
     value
     for value in vars(effects).values()
-    if isinstance(value, type) and issubclass(value, Effect) and value not in (Effect, CombinedEffect)
+    if isinstance(value, type) and issubclass(value, Effect) and value is not Effect
+    if not issubclass(value, CombinedEffect)
 ]
 
 ALL: tuple[Effect, ...] = (
