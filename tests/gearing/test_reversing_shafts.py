@@ -26,6 +26,7 @@ from tol3d.gearing.methods.analytic import AnalyticMethod, analytic_values
 from tol3d.gearing.methods.geometric import FclMethod, GeometricMethod
 from tol3d.gearing.model import AxisOffset, AxisTilt, Measure, Model, Positions
 from tol3d.gearing.slopes.sensitivity import sensitivities
+from tol3d.gearing.summary.train_sections import description
 from tol3d.gearing.system import GearSystem
 from tol3d.gears import InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.study.system.trials import Trials
@@ -185,6 +186,8 @@ def test_what_is_no_lost_motion_is_read_under_the_load_on_the_working_flanks(kin
         for name in names:
             assert np.array_equal(found[name], expected[name])
     assert all(own.kind.backlashes[0][1].reading.reversing is False for own in stays.measures)
+    said = ["lost_motion" in description(own, measure_of(own, "normal backlash")) for own in (model, stays)]
+    assert said == [False, True]  # a normal backlash says nothing of lost motion where more adds to that
 
 
 # pairs on shafts in two bearings each ---------------------------------------------------------------------------------
