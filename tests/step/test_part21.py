@@ -151,6 +151,17 @@ def test_an_error_names_its_instance_once() -> None:
         file[file[1].needed("A").reference(0)].needed("C")
 
 
+def test_a_damaged_name_in_the_header_ends_no_file_and_a_damaged_schema_does() -> None:
+    """A bracket that closes too early, as a public file of SolidWorks has it after its name was changed by hand."""
+    header = (
+        "HEADER;FILE_DESCRIPTION(('x'),'1');FILE_NAME('x.step'),'2021',(''),(''),'','','');FILE_SCHEMA(('A'));ENDSEC;"
+    )
+    text = f"ISO-10303-21;{header}DATA;#1=B();ENDSEC;END-ISO-10303-21;"
+    assert read_part21(text.encode(), "x.stp").header.schemas == ("A",)
+    with pytest.raises(StepError, match=r"^x.stp:1: in the header: "):
+        read_part21(text.replace("(('A'))", "('A'),").encode(), "x.stp")
+
+
 @pytest.mark.parametrize("entity", ["REPRESENTATION", "DIMENSIONAL_SIZE_WITH_DATUM_FEATURE"])
 def test_a_density_and_a_size_may_name_themselves_where_no_shape_does(entity: str) -> None:
     """Open CASCADE 6 lists a density's representation among its own items."""

@@ -221,6 +221,8 @@ def read_header(text: str, position: int, name: str) -> tuple[Header, int]:
         try:
             record = read_records(said)[0]
         except StepError as error:
+            if not said.startswith("FILE_SCHEMA"):
+                continue  # names and descriptions, on which nothing depends
             raise StepError(f"{here}: in the header: {error}") from None
         found[record.keyword] = Record(Instance(0, here, (record,)), record.keyword, record.arguments)
     schema = found.get("FILE_SCHEMA")
