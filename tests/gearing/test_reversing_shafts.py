@@ -338,13 +338,15 @@ def test_the_stack_up_differs_by_a_quarter_when_all_halves(tmp_path: Path) -> No
     assert len(of_squares) >= 23  # in one, a ring, a contact line comes to an end at which the gap is less in between
 
 
-def test_a_helix_that_vanishes_leaves_a_spur_gear(tmp_path: Path) -> None:
+@pytest.mark.parametrize("direction", ["reversing", "tooth_force"])
+def test_a_helix_that_vanishes_leaves_a_spur_gear(direction: str, tmp_path: Path) -> None:
     """Between the bearings and beyond them; the couple of a thrust of tan(1e-4 deg) moves nothing that counts."""
     for seed in range(3):
         found = []
         for helix in (0.0, math.radians(1e-4)):
             stage = random_stage(np.random.default_rng(seed), helix=helix)
-            found.append(np.array(values(stage_scene(stage, tmp_path, -1, seed), "free")) * arm(stage))
+            model = stage_scene(stage, tmp_path, -1, seed, direction)
+            found.append(np.array(values(model, "free")) * arm(stage))
         assert found[0] == pytest.approx(found[1], abs=1e-7)  # 30 um and 1.7e-6 of them, twice over r_w/L
 
 

@@ -220,6 +220,8 @@ class BearingClearanceSpec(GearToleranceSpec):
         helical = self.direction == "tooth_force" and mesh.gear(gear.gear).twist
         if helical or (self.direction == "reversing" and len(bearings) > 1):
             seen = seen - _force_azimuth(mesh, gear.gear) + _load_azimuth(mesh, gear, *bearings[:2])
+        elif self.direction == "tooth_force" and len(bearings) > 1 and _share(gear, *bearings[:2]) < 0.0:
+            seen += math.pi  # a gear beyond both bearings lifts the shaft at the far one
         return -seen if gear.backward else seen
 
     def _azimuth(self, gear: str, mesh: Mesh | None, nominal: Nominal) -> float:
@@ -231,6 +233,11 @@ class BearingClearanceSpec(GearToleranceSpec):
         towards, opening = mesh.pair.mesh_azimuths[role], mesh.pair.opening_off_mesh[role]
         towards += mesh.azimuth if gear == mesh.driver else nominal.seat_azimuth(mesh.name)
         return towards + (opening if self.direction == "apart" else _force_azimuth(mesh, gear))
+
+
+def _share(own: Carried, at: float, other: float) -> float:
+    """Share of a gear's radial force that a bearing takes, at places along the shaft [mm]; below 0 beyond the other."""
+    return (other - own.at) / (other - at)
 
 
 def _load_azimuth(mesh: Mesh, own: Carried, at: float, other: float) -> float:
@@ -248,10 +255,8 @@ def _load_azimuth(mesh: Mesh, own: Carried, at: float, other: float) -> float:
     towards = away * math.sin(alpha) * math.cos(beta_b)
     onwards = flank * math.cos(alpha) * math.cos(beta_b)
     thrust = -flank * math.copysign(math.sin(beta_b), mesh.gear(own.gear).twist)
-    here, there = (own.sense * (place - own.at) for place in (at, other))
-    radius = pair.working_radii[0 if driver else 1]
-    share = there / (there - here)
-    return math.atan2(share * onwards, share * towards + radius * thrust / (there - here))
+    share, radius = _share(own, at, other), pair.working_radii[0 if driver else 1]
+    return math.atan2(share * onwards, share * towards + radius * thrust / (own.sense * (other - at)))
 
 
 def _force_azimuth(mesh: Mesh, gear: str) -> float:
