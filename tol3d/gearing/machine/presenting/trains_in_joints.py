@@ -104,9 +104,9 @@ def trains_in_joints(simulation: Simulation) -> tuple[TrainInJoint, ...]:
         if root in system.worlds:
             continue
         output, first = layout.world_from_shaft[train.output], layout.world_from_shaft[train.driven]
-        into = np.linalg.inv(output).astype(np.float64)
+        into = np.asarray(np.linalg.inv(output), dtype=np.float64)
         if (into @ first)[2, 3] > ONE_LINE:
-            into = (np.diag([1.0, -1.0, -1.0, 1.0]) @ into).astype(np.float64)
+            into = np.asarray(np.diag([1.0, -1.0, -1.0, 1.0]) @ into, dtype=np.float64)
         bodies = tuple(_joined(name, list(_parts(display.worlds, model, root)), into))
         if bodies:
             crossing = np.linalg.norm(np.cross(output[:3, 2], first[:3, 2])) > ONE_LINE
