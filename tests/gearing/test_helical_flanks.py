@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -208,8 +209,14 @@ def test_shifts_along_the_axis_move_the_ends_of_faces_alone(pair: str, tmp_path:
 
 
 @pytest.mark.slow
-@ALL_PAIRS
-@pytest.mark.parametrize("kinds", [("pitch_deviation",), ("profile_slope",), ("helix_slope",)])
+@pytest.mark.parametrize(
+    ("kinds", "pair"),
+    [
+        *product([("pitch_deviation",), ("profile_slope",), ("helix_slope",)], PAIRS),
+        (("pitch_deviation", *SLOPES), "external"),
+        (("pitch_deviation", *SLOPES), "in a ring"),
+    ],
+)
 def test_strips_of_deviated_flanks_touch_within_their_chord_error(
     kinds: tuple[str, ...], pair: str, tmp_path: Path
 ) -> None:
