@@ -3,7 +3,7 @@
 import math
 
 from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL
+from tol3d.parts.details import LEAST_WALL
 from tol3d.parts.named_solid import NamedSolid
 from tol3d.parts.turned import AXIS, section, turned
 

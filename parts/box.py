@@ -10,10 +10,8 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.gp import gp_Pnt
 
 from tol3d.errors import GeometryError
-from tol3d.parts.details import Place
+from tol3d.parts.details import LEAST_WALL, Place
 from tol3d.parts.named_solid import NamedSolid
-
-LEAST_WALL: Final = 1e-3  # mm; far above OCC's point tolerance of 1e-7, and no machined wall is thinner
 
 Point = tuple[float, float, float]
 

@@ -9,8 +9,8 @@ from OCP.GC import GC_MakeArcOfCircle
 from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf
 
 from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL, Box, Side
-from tol3d.parts.details import Hole
+from tol3d.parts.box import Box, Side
+from tol3d.parts.details import LEAST_WALL, Hole
 from tol3d.parts.machining import cutter, refuse_meeting, tools_of
 from tol3d.parts.named_boolean import cut
 from tol3d.parts.named_solid import NamedEdge, NamedSolid, extruded

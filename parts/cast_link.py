@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from OCP.gp import gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf
 
 from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL
+from tol3d.parts.details import LEAST_WALL
 from tol3d.parts.link_ends import RELIEF, Distal, Proximal
 from tol3d.parts.named_boolean import cut, fused
 from tol3d.parts.named_solid import NamedSolid

@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 
 from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL, TOP_IS_Z, Box
-from tol3d.parts.details import Hole, Slot, Spigot
+from tol3d.parts.box import TOP_IS_Z, Box
+from tol3d.parts.details import LEAST_WALL, Hole, Slot, Spigot
 from tol3d.parts.machining import cutter, refuse_meeting, tools_of
 from tol3d.parts.named_boolean import cut, fused
 from tol3d.parts.named_solid import NamedSolid

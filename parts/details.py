@@ -2,8 +2,11 @@
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 from tol3d.errors import GeometryError
+
+LEAST_WALL: Final = 1e-3  # mm; far above OCC's point tolerance of 1e-7, and no machined wall is thinner
 
 Place = tuple[float, float]
 """Two coordinates of the part [mm]: x, y and z in this order without the one that a face is square to."""

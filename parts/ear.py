@@ -11,8 +11,7 @@ from OCP.GC import GC_MakeArcOfCircle
 from OCP.gp import gp_Pnt
 
 from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL
-from tol3d.parts.details import DetailError
+from tol3d.parts.details import LEAST_WALL, DetailError
 from tol3d.parts.named_boolean import cut
 from tol3d.parts.named_solid import BACK, FRONT, NamedEdge, NamedSolid, extruded
 from tol3d.parts.round_hole import RoundHole

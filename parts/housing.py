@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL, TOP_IS_Y, Box, Point, Side
-from tol3d.parts.details import Bore, Boss, Hole, Pin
+from tol3d.parts.box import TOP_IS_Y, Box, Point, Side
+from tol3d.parts.details import LEAST_WALL, Bore, Boss, Hole, Pin
 from tol3d.parts.machining import (
     OVERSHOOT,
     refuse_depth,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL
+from tol3d.parts.details import LEAST_WALL
 
 RELIEF: Final = 2.0
 """mm; width of the groove round a pilot, in which that part of it lies which is behind the seat."""

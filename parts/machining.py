@@ -13,8 +13,8 @@ from OCP.GC import GC_MakeArcOfCircle
 from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 
 from tol3d.errors import GeometryError
-from tol3d.parts.box import LEAST_WALL, Box, Side
-from tol3d.parts.details import Bore, Boss, Detail, DetailError, Hole, Pin, Place, Slot
+from tol3d.parts.box import Box, Side
+from tol3d.parts.details import LEAST_WALL, Bore, Boss, Detail, DetailError, Hole, Pin, Place, Slot
 from tol3d.parts.named_boolean import cut, fused
 from tol3d.parts.named_solid import BACK, FRONT, NamedEdge, NamedSolid, extruded
 

@@ -9,7 +9,7 @@ from OCP.gp import gp_Ax1, gp_Ax3, gp_Dir, gp_Pln, gp_Pnt, gp_Trsf
 
 from tol3d.errors import GeometryError
 from tol3d.gears import LEFT, RIGHT, SpurGear
-from tol3d.parts.box import LEAST_WALL
+from tol3d.parts.details import LEAST_WALL
 from tol3d.parts.named_solid import NamedEdge, NamedSolid
 from tol3d.parts.spur_tooth import Tooth, corners_of, sides_of
 from tol3d.parts.tooth_edges import SHORTEST_EDGE, arc, circle, vertex

@@ -44,7 +44,7 @@ FIELD_SCENES = (
     "warm_bar",
 )
 """Between them every kind and every field, but for the builders of linkages."""
-LINKAGES = ("spherical_drive", "stewart")
+LINKAGES = ("spherical_drive", "stewart", "robot_arm")
 
 BUILDERS_PAGE = text_of("builders")
 OWN_PROGRAM, OWN_LINES = (
