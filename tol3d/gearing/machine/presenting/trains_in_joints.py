@@ -29,6 +29,8 @@ from tol3d.study.trials.simulation import Simulation
 
 COARSE: Final = 0.2
 """mm; deflection of triangles from faces, far below a pixel of a picture of a whole arm."""
+SOME_NAMES: Final = 3
+"""Bodies of one colour that are named where their names have no word in common."""
 ONE_LINE: Final = 1e-9
 """Sine of an angle, and mm; shafts that cross by less are parallel."""
 APART: Final = 1.0
@@ -136,8 +138,9 @@ def _joined(train: str, bodies: Sequence[Body], into: Array) -> Iterator[Body]:
     for colour, alike in by_colour.items():
         surface = _coarse(alike, into)
         names = [body.name for body in alike]
-        shared = takewhile(lambda letters: len(set(letters)) == 1, zip(*names, strict=False))
-        words = "".join(letters[0] for letters in shared).strip() or ", ".join(names)
+        shared = takewhile(lambda words: len(set(words)) == 1, zip(*(name.split() for name in names), strict=False))
+        more = f" and {len(names) - SOME_NAMES} more" if len(names) > SOME_NAMES else ""
+        words = " ".join(word[0] for word in shared) or ", ".join(names[:SOME_NAMES]) + more
         yield Body(f"{train}: {words}", np.eye(4), partial(_as_made, surface), None, colour)
 
 
