@@ -352,7 +352,7 @@ def test_datum_targets_without_a_place_are_asked_for_by_name() -> None:
     target = DatumTarget(1, "1", "point", text.datums[1].features[0], None, ())
     targets = tuple(replace(target, number=number) for number in ("1", "2", "3"))
     datums = [replace(own, features=(), targets=targets) if own.letter == "B" else own for own in text.datums]
-    (file,) = read_files({"file.step": content})
+    (file,) = read_files({"block.step": content})
     changed = replace(text, datums=tuple(datums))
     own = replace(file, text=changed, meanings=Meanings(changed, file.meanings.surfaces))
     lines = list(Draft([own], [], []).targets_told(own))
@@ -368,7 +368,7 @@ def test_datum_targets_without_a_place_are_asked_for_by_name() -> None:
 def test_a_part_with_three_planes_as_datums_lies_on_six_pads(tmp_path: Path) -> None:
     """Pads at 0.4 of each face's extents: the part stands where it is drawn, and a higher pad turns it by its lever."""
     content = step_file({"block": BLOCK}, tmp_path / "block.step")
-    (part,) = drafted_parts(read_files({"file.step": content}), Names())
+    (part,) = drafted_parts(read_files({"block.step": content}), Names())
     wanted = ((0, 0, -10), (0, -10, 0), (-10, 0, 0))
     frame = []
     for letter, at in zip("ABC", wanted, strict=True):
@@ -395,7 +395,7 @@ def test_a_part_with_three_planes_as_datums_lies_on_six_pads(tmp_path: Path) -> 
 def test_a_slot_as_second_datum_closes_on_a_blade(tmp_path: Path) -> None:
     """Walls at x = -3 and 3 mm that lie 0.03 mm to the right: the block goes 0.03 mm to the left."""
     content = step_file({"block": slotted_block()}, tmp_path / "block.step")
-    (part,) = drafted_parts(read_files({"file.step": content}), Names())
+    (part,) = drafted_parts(read_files({"block.step": content}), Names())
     known = part.features.part.features
 
     def plane(x: float, normal: tuple[float, float, float]) -> FoundFeature:
