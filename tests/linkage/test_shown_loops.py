@@ -89,7 +89,7 @@ def test_a_build_moves_along_its_path(scene: Path, tmp_path: Path) -> None:
     run = run_scene(scene, overrides=Overrides(trials=50), out=tmp_path / "run")
     display = presenter_at("tol3d.assembly.presenting").display(run, "nominal", magnify=1.0)
     motion = motion_of(display, None, 5)
-    assert motion.world.name == "sweep"
+    assert [shot.title for shot in motion.shots] == ["sweep"]
     moved = [frame.poses["gear 2"][:3, 2] @ motion.frames[0].poses["gear 2"][:3, 2] for frame in motion.frames]
     tilts = np.degrees(np.arccos(np.clip(moved, -1.0, 1.0)))
     assert tilts == pytest.approx([20.0 * k for k in (0, 2, 4, 5, 7)], abs=1e-5)  # twice the tilt of the ring

@@ -11,7 +11,7 @@ from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.stack_up.contact_lines import ContactLines, lost
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Bound, Neglect, Role, Term
-from tol3d.gearing.stack_up.tooth_pairs import lines_alone
+from tol3d.gearing.stack_up.tooth_pairs import ToothPairs, lines_alone
 from tol3d.gears import InternalPair, SpurPair
 from tol3d.numerics.arrays import Array
 
@@ -155,17 +155,11 @@ class HelicalStack(SpurStack):
         right, left = self._of_sides(in_plane, across, driver_angle)
         return np.asarray(self.sense * (right - left) / 2)
 
-    @property
-    def turns_by_teeth(self) -> bool:
-        """True if single flanks deviate, or axes lean."""
-        return self.teeth is not None or any(term.leans for term in self.terms)
-
-    def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
-        """As of single flanks: the pair of leaning axes that touches first, (trials, positions) [mm at the arm]."""
-        if self.teeth:
-            return super().turned_by_teeth(side, deviations, driver_angle)
-        in_plane, across = self._lost_by_tilts(deviations)
-        return self.sense * side * lost((in_plane + side * across)[:, None] / 2, self._lines.ends(side, driver_angle))
+    @cached_property
+    def turning_teeth(self) -> ToothPairs | None:
+        """Of single flanks that deviate; where axes lean the contact lines of all."""
+        leans = any(term.leans for term in self.terms)
+        return lines_alone(self.model, self.mesh, self.pair, self.reading) if leans and not self.teeth else self.teeth
 
     @property
     def _longest_path(self) -> float:

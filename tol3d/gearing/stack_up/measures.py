@@ -177,7 +177,7 @@ def analytic_transmission_error(
                 total += np.multiply.outer(deviations[:, column], factor * (own - own[0]))
         mesh = model.mesh(backlash.mesh)
         stack, side = stack_of(model, mesh, backlash.reading), mesh.resting_flank(backlash.reading.flank)
-        if stack.turns_by_teeth:
+        if stack.turning_teeth:
             turned = stack.turned_by_teeth(side, deviations, driver) * per_normal_backlash(model, backlash)
             total += factor * (turned - turned[:, :1])
     return total

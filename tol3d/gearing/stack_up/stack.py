@@ -139,12 +139,12 @@ class Stack(NominalMesh[Pair]):
         return working + teeth.taken(-work, built, driver_angle, leans[-work], moved[-work], turns, apart)
 
     @property
-    def turns_by_teeth(self) -> bool:
-        """True if what rests turns the driven gear from position to position, as other teeth come into contact."""
-        return self.teeth is not None
+    def turning_teeth(self) -> ToothPairs | None:
+        """Pairs that turn the driven gear from position to position, as others come into contact; None if none do."""
+        return self.teeth
 
     def turned_by_teeth(self, side: int, deviations: Array, driver_angle: Array) -> Array:
-        """Turn of the driven gear about its z [mm at its arm] by single flanks where a side touches.
+        """Turn of the driven gear about its z [mm at its arm] by its turning teeth where a side touches.
 
         Args:
             side: 1 where the driver's right flanks touch, -1 where its left ones do.
@@ -154,12 +154,12 @@ class Stack(NominalMesh[Pair]):
         Returns:
             (trials, positions).
         """
-        count, positions = len(deviations), len(driver_angle)
-        if self.teeth is None:
+        count, positions, teeth = len(deviations), len(driver_angle), self.turning_teeth
+        if teeth is None:
             return np.zeros((count, positions))
         trial, angles = np.repeat(np.arange(count), positions), np.tile(driver_angle, count)
-        built, moved = self.teeth.built(deviations, trial), self._moved(deviations, angles, trial)
-        taken = self.teeth.taken(side, built, angles, self._leans(deviations)[side], moved[side])
+        built, moved = teeth.built(deviations, trial), self._moved(deviations, angles, trial)
+        taken = teeth.taken(side, built, angles, self._leans(deviations)[side], moved[side])
         return np.asarray(self.sense * side * taken.reshape(count, positions))
 
     def _moved(

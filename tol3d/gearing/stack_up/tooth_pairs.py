@@ -274,8 +274,8 @@ def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None
     return ToothPairs(mesh.pair, reading, mesh.resting_flank(reading.flank), driver, driven, beyond)
 
 
-def lines_alone(model: Model, mesh: Mesh, pair: SpurPair, reading: Reading) -> ToothPairs:
-    """The pairs of flanks of a mesh whose gears grow apart, so that base pitches differ; no flank deviates."""
+def lines_alone(model: Model, mesh: Mesh, pair: SpurPair | InternalPair, reading: Reading) -> ToothPairs:
+    """The pairs of flanks of a mesh of which none deviates: of gears that grow apart, or lean."""
     driver, driven = (_flanks(model, mesh, name, ()) for name in (mesh.driver, mesh.driven))
     return ToothPairs(pair, reading, mesh.resting_flank(reading.flank), driver, driven, CONTACT_MARGIN)
 
