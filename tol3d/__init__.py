@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 from tol3d.current_folder import leave_settings_unread
 
 if TYPE_CHECKING:
+    from tol3d.analyses.answers import sweep
     from tol3d.apps.adjustment.answers import find_shims
     from tol3d.errors import InputError as InputError
     from tol3d.errors import RunError as RunError
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
         export_trial,
         replay,
         response,
-        sweep,
         view_trial,
         write_report,
     )
@@ -72,7 +72,7 @@ _HOMES = {
     "replay": "tol3d.notebook",
     "response": "tol3d.notebook",
     "run_scene": "tol3d.simulate",
-    "sweep": "tol3d.notebook",
+    "sweep": "tol3d.analyses.answers",
     "view_trial": "tol3d.notebook",
     "write_report": "tol3d.notebook",
 }

@@ -16,8 +16,6 @@ from platform import machine, python_version
 from typing import TYPE_CHECKING, Final
 
 from tol3d import report, simulate
-from tol3d.analyses.answers import Variants as Variants
-from tol3d.analyses.answers import sweep as sweep
 from tol3d.analyses.kept_pages import kept_advice, kept_charts, kept_pages, kept_shares
 from tol3d.analyses.response import Response, response_of
 from tol3d.errors import InputError, RunError, unwritable
