@@ -271,7 +271,7 @@ def test_a_span_of_a_ring_above_its_nominal_makes_teeth_thinner(teeth: int | Non
 
 @pytest.mark.parametrize("teeth", [8, None])
 def test_allowances_of_a_ring_below_0_are_those_above_0(teeth: int | None) -> None:
-    """Of its span and its size between balls: both make teeth thinner, the limits change places."""
+    """Span and size between balls: both make teeth thinner, the limits change places."""
     ring = planetary(series=("", "", ""))
     ring = ring.having(12, number_of_teeth_for_span_measurement=(teeth, "none")) if teeth else ring
     ring = ring.having(12, diameter_of_measuring_ball_or_pin=(6.65, "mm"))
@@ -545,7 +545,7 @@ def test_axial_plays_that_are_filled_in_screw_the_train() -> None:
 
 
 def test_axial_clearances_of_bearings_are_plays_of_helical_shafts() -> None:
-    """Of the one bearing that holds a shaft; of two the line to fill in says both, of a spur shaft nothing."""
+    """That of the one bearing that holds a shaft; for two the line to fill in says both, for a spur shaft nothing."""
     writer = Writer()
     first, second, third = (
         writer.shaft(own, (0.0, 0.0, z)) for own, z in (("one", 0.0), ("two", -190.0), ("three", 0.0))

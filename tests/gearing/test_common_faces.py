@@ -25,7 +25,7 @@ study: {trials: 2, seed: 1}
 
 
 def warnings(tolerances: str, folder: Path) -> list[str]:
-    """What is warned of the faces of a pair with these tolerances."""
+    """Warnings about the faces of a pair with these tolerances."""
     lines = [f"  t{k}: {{{own}}}" for k, own in enumerate(tolerances.splitlines())]
     (path := folder / "shifted.yaml").write_text(SCENE % "\n".join(lines))
     return [line for line in model_of_scene(path).warnings if "face" in line]
@@ -101,7 +101,7 @@ study: {trials: 10, seed: 1}
 
 @pytest.mark.parametrize(("at", "told"), [(29.0, True), (11.0, True), (28.99, False)])
 def test_places_on_shafts_that_leave_no_common_face_are_told(at: float, told: bool, tmp_path: Path) -> None:
-    """Of faces 10 and 8 mm wide 9 mm apart."""
+    """Faces 10 and 8 mm wide that lie 9 mm apart."""
     (path := tmp_path / "two.yaml").write_text(TWO % at)
     with pytest.raises(SceneError) as refused:
         model_of_scene(path)

@@ -144,7 +144,7 @@ def test_a_free_turn_is_that_between_two_places_of_the_axes(kind: str, hand: str
 @pytest.mark.parametrize("flank", ["left", "right"])
 @pytest.mark.parametrize("kind", ["spur", "helical", "internal", "ring drives"])
 def test_each_clearance_opens_its_full_length_along_the_normals(kind: str, flank: str, tmp_path: Path) -> None:
-    """Of a helical gear cos(beta_b) of it: its shaft moves across the axis, and the force leans by beta_b."""
+    """A helical gear has cos(beta_b) of it: its shaft moves across the axis, and the force leans by beta_b."""
     none, sizes = plain_pair(tmp_path, kind, flank, (1e-9, 1e-9)), (0.02, 0.034)
     model = plain_pair(tmp_path, kind, flank, sizes)
     pair = model.meshes[0].pair

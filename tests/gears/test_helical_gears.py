@@ -292,7 +292,7 @@ def test_pins_and_balls_need_a_face_as_wide_as_their_contacts_lie_apart(teeth: i
     radius = gear.base_radius / math.cos(balls._angle(gear))
 
     def height(side: int) -> float:
-        """Of the point of a flank of the space about +x that is nearest to the ball, on grids that shrink."""
+        """That of the point of a flank of the space about +x that is nearest to the ball, on grids that shrink."""
         tooth = 0 if side < 0 else 1
         space = math.pi / teeth
         first, last = np.array([screw.ends[0], -2.0]), np.array([screw.tip + 1.0, 2.0])
@@ -324,7 +324,7 @@ def test_pins_and_balls_need_a_face_as_wide_as_their_contacts_lie_apart(teeth: i
 
 
 def test_thousand_thicknesses_come_back_from_each_measure() -> None:
-    """Of a thousand gears, by span, balls and pins; to 1e-10 mm.
+    """A thousand gears, by span, balls and pins; to 1e-10 mm.
 
     A span and a tooth along its normals change by cos(alpha_n) of the arc in the normal section, the arc in the
     transverse section by 1/cos(beta) of it.

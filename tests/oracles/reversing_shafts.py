@@ -98,7 +98,7 @@ class Stage:
         return self.out * working * (self.rest(turn, -working, -working if reversing else working) - drive)
 
     def pushed_open(self, working: int) -> float:
-        """What both loads open [mm along the normals] where nothing leans, by virtual work: half of each clearance
+        """Opening by both loads [mm along the normals] if nothing leans, by virtual work: half of each clearance
         times the load on its bearing."""
         return sum(
             size / 2 * float(np.hypot(*load))

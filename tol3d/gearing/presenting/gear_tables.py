@@ -215,6 +215,6 @@ def gear_blocks(gears: Mapping[str, Gear]) -> list[PageItem]:
 
 
 def pair_blocks(meshes: Iterable[Mesh]) -> list[PageItem]:
-    """What nominal pairs of a reducer give."""
+    """Numbers of the nominal pairs of a reducer."""
     columns = [(mesh.name, (HelicalPairColumn if _is_helical(mesh) else PairColumn)(mesh)) for mesh in meshes]
     return titled("meshes, nominal", side_by_side("", columns))

@@ -157,7 +157,7 @@ class HelicalStack(SpurStack):
 
     @cached_property
     def turning_teeth(self) -> ToothPairs | None:
-        """Of single flanks that deviate; where axes lean the contact lines of all."""
+        """Those of single flanks that deviate; where axes lean all, by their contact lines."""
         leans = any(term.leans for term in self.terms)
         return lines_alone(self.model, self.mesh, self.pair, self.reading) if leans and not self.teeth else self.teeth
 

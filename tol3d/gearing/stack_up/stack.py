@@ -27,7 +27,7 @@ class Shifts(NamedTuple):
     """Openings by shifts of axes and by parts that grow."""
     aside: Sequence[Term]
     screwed: Sequence[Term]
-    """Of those aside, by teeth that move along the axis."""
+    """The part of those aside by teeth that move along the axis."""
 
 
 class Stack(NominalMesh[Pair]):

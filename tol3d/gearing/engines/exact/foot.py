@@ -238,7 +238,7 @@ def external_sense(tooth: Any) -> float:
 
 
 def own_sense(tooth: Any) -> Any:
-    """Of the gear or of its mate, which is a ring."""
+    """That of the gear, or of its mate, which is a ring."""
     return tooth.sense
 
 
