@@ -237,7 +237,7 @@ def test_builds_at_their_tolerances_differ_by_tenths_of_a_micrometre(kind: str, 
 
 
 @pytest.mark.parametrize("kind", ["external", "ring", "driving ring"])
-def test_transmission_error_follows_contact_lines_of_tilted_axes(kind: str, tmp_path: Any) -> None:
+def test_transmission_error_and_backlash_follow_contact_lines_of_tilted_axes(kind: str, tmp_path: Any) -> None:
     """A constant tilt of 0.3 mrad alone: up to p_bn sin(beta_b) cos(beta_b) f within every pitch, by both methods."""
     constant = "distribution: {kind: constant, value: "
     tilt = f"tolerances:\n  out: {{kind: axis_out_of_plane, of: gear pair, {constant}0.3 mrad}}}}\n"
@@ -262,6 +262,10 @@ def test_transmission_error_follows_contact_lines_of_tilted_axes(kind: str, tmp_
     largest = pair.pinion.base_pitch * math.sin(beta_b) * math.cos(beta_b) * f / pair.wheel.section_arm
     assert 0.4 * largest < np.ptp(exact) < 1.05 * largest
     assert np.abs(by_stack - exact).max() < 0.15 * largest  # lines end where mates do that stand the backlash apart
+    rows = np.repeat(deviations, len(angles), axis=0)
+    gap = engine.read(engine.build(rows), mesh, Reading(), angles).gap
+    off = stack_of(model, mesh, Reading()).normal_backlash(rows, angles) - gap
+    assert np.abs(off).max() < 0.3 * largest * pair.wheel.section_arm  # of both sides
 
 
 @ALL_KINDS
